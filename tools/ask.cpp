@@ -1,5 +1,4 @@
 // clearance-ask: certified distances of whole motions, one JSON object a line in and out.
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -108,42 +107,39 @@ int run(const AskOptions& options) {
 }  // namespace clearance
 
 int main(int argc, char** argv) {
-  CLI::App app(clearance::kDescription, "clearance-ask");
-  app.footer(clearance::kExample);
   clearance::AskOptions options;
-  app.add_option("CELL", options.cell, "Cell file, or a folder of cells")->required();
-  app.add_option("MOTIONS", options.motions,
-                 "File of motions, one a line, or a ROS 2 bag; - is standard input")
-      ->required();
-  app.add_option("--out", options.out, "File for the answers; - is standard output")->required();
-  app.add_option(
-         "--margin", options.margins,
-         "Margins, m; 0 asks for contact; repeatable. A,B=0.05 is one of the pairs of two "
-         "objects or groups, ZONE=0.05 of a zone. Others count for all pairs but those that "
-         "a robot's own build keeps nearer in every posture")
-      ->capture_default_str();
-  app.add_option("--tolerance", options.tolerance, "Largest gap between lower and upper, m")
-      ->check(clearance::positive_number())
-      ->capture_default_str();
-  app.add_option("--expect-min-distance", options.expected,
-                 "A motion that is not certainly this far from everything, m, fails")
-      ->check(clearance::number_from_zero());
-  app.add_flag("--others-still", options.others_still,
-               "Objects that are neither fixed nor part of a robot do not move");
-  app.add_flag(
-      "--verdicts", options.only_verdicts,
-      "Only the verdicts of margins; lower and first_below are then as good as these needed");
-  app.add_option("--repeat", options.repeat, "Ask N times, for the times on stderr")
-      ->check(CLI::Range(1, 1000000));
-  app.add_option(
-         "--threads", options.threads,
-         "Answer in N threads, 256 motions for each at a time; the answers have the same bits")
-      ->check(CLI::Range(1, 256));
-  app.add_option("--profile", options.files.profile,
-                 "CSV for the distance over time: bounds for each part of each motion");
-  app.add_option("--plot", options.files.plot, "SVG for the same, by gnuplot");
-  app.add_option("--report", options.files.page, "Page of HTML with plot and table, for a review");
-  if (const auto done = clearance::parse(app, argc, argv)) return *done;
+  clearance::CommandLine line{clearance::kDescription, clearance::kExample};
+  line.options = {
+      {"CELL", &options.cell, "Cell file, or a folder of cells", clearance::required()},
+      {"MOTIONS", &options.motions,
+       "File of motions, one a line, or a ROS 2 bag; - is standard input", clearance::required()},
+      {"--out", &options.out, "File for the answers; - is standard output", clearance::required()},
+      {"--margin",
+       &options.margins,
+       "Margins, m; 0 asks for contact; repeatable. A,B=0.05 is one of the pairs of two objects or "
+       "groups, ZONE=0.05 of a zone. Others count for all pairs but those that a robot's own build "
+       "keeps nearer in every posture",
+       {.shows_default = true, .takes_all = true}},
+      {"--tolerance", &options.tolerance, "Largest gap between lower and upper, m",
+       clearance::positive_number(), clearance::shown()},
+      {"--expect-min-distance", &options.expected,
+       "A motion that is not certainly this far from everything, m, fails",
+       clearance::number_from_zero()},
+      {"--others-still", &options.others_still,
+       "Objects that are neither fixed nor part of a robot do not move"},
+      {"--verdicts", &options.only_verdicts,
+       "Only the verdicts of margins; lower and first_below are then as good as these needed"},
+      {"--repeat", &options.repeat, "Ask N times, for the times on stderr",
+       clearance::whole_number_in(1, 1'000'000)},
+      {"--threads", &options.threads,
+       "Answer in N threads, 256 motions for each at a time; the answers have the same bits",
+       clearance::whole_number_in(1, 256)},
+      {"--profile", &options.files.profile,
+       "CSV for the distance over time: bounds for each part of each motion"},
+      {"--plot", &options.files.plot, "SVG for the same, by gnuplot"},
+      {"--report", &options.files.page, "Page of HTML with plot and table, for a review"},
+  };
+  if (const auto done = clearance::parse(line, argc, argv)) return *done;
   return clearance::run_program("clearance-ask",
                                 [&](clearance::StopSignal&) { return clearance::run(options); });
 }

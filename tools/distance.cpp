@@ -3,7 +3,6 @@
 //
 // The program serves to check the core against other programs. The answer has every figure of the
 // core, and doubles are printed so that they read back as the same doubles.
-#include <CLI/CLI.hpp>
 #include <filesystem>
 #include <fstream>
 #include <iostream>
@@ -154,30 +153,28 @@ int run(const Options& options) {
 }  // namespace clearance
 
 int main(int argc, char** argv) {
-  CLI::App app(clearance::kDescription, "clearance-distance");
-  app.footer(clearance::kExample);
   clearance::Options options;
-  app.add_option("--cases", options.cases, "File of cases, one a line; - is standard input")
-      ->required();
-  app.add_option("--out", options.out, "File for the answers; - is standard output")->required();
-  app.add_flag("--cold", options.cold, "Reset the tracking state between the poses of a motion");
-  app.add_option("--repeat", options.repeat, "Repeat every query N times, for the time on stderr")
-      ->check(CLI::Range(1, 1000000));
-  CLI::Option* const check =
-      app.add_flag("--check", options.check, "Check the answers against exact ones in the cases");
-  app.add_option("--tolerance", options.tolerance,
-                 "Largest error that --check accepts, relative to the larger of a case's scale and "
-                 "distance")
-      ->needs(check)
-      ->check(clearance::number_from_zero())
-      ->capture_default_str();
-  app.add_option(
-         "--gap", options.gap,
-         "Largest gap between bounds that --check accepts, relative to the sum of both bodies' "
-         "bounding radii and the distance of their origins")
-      ->needs(check)
-      ->check(clearance::number_from_zero())
-      ->capture_default_str();
-  if (const auto done = clearance::parse(app, argc, argv)) return *done;
+  clearance::CommandLine line{clearance::kDescription, clearance::kExample};
+  line.options = {
+      {"--cases", &options.cases, "File of cases, one a line; - is standard input",
+       clearance::required()},
+      {"--out", &options.out, "File for the answers; - is standard output", clearance::required()},
+      {"--cold", &options.cold, "Reset the tracking state between the poses of a motion"},
+      {"--repeat", &options.repeat, "Repeat every query N times, for the time on stderr",
+       clearance::whole_number_in(1, 1'000'000)},
+      {"--check", &options.check, "Check the answers against exact ones in the cases"},
+      {"--tolerance",
+       &options.tolerance,
+       "Largest error that --check accepts, relative to the larger of a case's scale and distance",
+       clearance::number_from_zero(),
+       {.shows_default = true, .needs = {"--check"}}},
+      {"--gap",
+       &options.gap,
+       "Largest gap between bounds that --check accepts, relative to the sum of both bodies' "
+       "bounding radii and the distance of their origins",
+       clearance::number_from_zero(),
+       {.shows_default = true, .needs = {"--check"}}},
+  };
+  if (const auto done = clearance::parse(line, argc, argv)) return *done;
   return clearance::run(options);
 }

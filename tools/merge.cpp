@@ -1,6 +1,5 @@
 // clearance-merge: joins the shares of a cell, and publishes the whole cell on its own topics for
 // readers that know nothing of shares.
-#include <CLI/CLI.hpp>
 #include <chrono>
 #include <cstdio>
 #include <map>
@@ -13,7 +12,7 @@
 
 #include "monitor/app/cell_arguments.hpp"
 #include "monitor/app/log.hpp"
-#include "monitor/app/log_lines.hpp"
+#include "monitor/app/log_line.hpp"
 #include "monitor/app/options.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
@@ -55,21 +54,21 @@ struct Arguments {
   DdsArguments dds;
 };
 
-void add_options(CLI::App& app, Arguments& arguments) {
-  app.add_option("CELL", arguments.cell.cell, "The cell file (YAML), which names the shares")
-      ->required();
-  app.add_option("--late-ms", arguments.late_ms,
-                 "What hangs on a share whose last report is older than this is unknown (default: "
-                 "three periods of the cell, and at least 20)")
-      ->check(CLI::Range(1.0, 10'000.0));
-  app.add_option("--seconds", arguments.seconds, "Stop after this time; 0: run until Ctrl-C")
-      ->check(number_from_zero());
-  app.add_option("--priority", arguments.fifo_priority, "Run under SCHED_FIFO with this priority")
-      ->check(CLI::Range(1, 99));
-  add_ros_outputs(app, arguments.ros);
-  arguments.dds.add_to(app);
-  add_log_level(app, arguments.log_level);
-  app.footer(kFooter);
+void add_options(CommandLine& line, Arguments& arguments) {
+  line.add({
+      {"CELL", &arguments.cell.cell, "The cell file (YAML), which names the shares", required()},
+      {"--late-ms", &arguments.late_ms,
+       "What hangs on a share whose last report is older than this is unknown (default: three "
+       "periods of the cell, and at least 20)",
+       number_in(1.0, 10'000.0)},
+      {"--seconds", &arguments.seconds, "Stop after this time; 0: run until Ctrl-C",
+       number_from_zero()},
+      {"--priority", &arguments.fifo_priority, "Run under SCHED_FIFO with this priority",
+       whole_number_in(1, 99)},
+      ros_outputs_option(arguments.ros),
+  });
+  arguments.dds.add_to(line);
+  line.add({log_level_option(arguments.log_level)});
 }
 
 // Logs what becomes of each share, once per change.
@@ -145,11 +144,12 @@ int run_merge(Cell cell, const Arguments& arguments, StopSignal& signal) {
 }
 
 int run(int argc, char** argv, StopSignal& signal) {
-  CLI::App app(
-      "Joins the shares of a cell that several daemons watch, and publishes the whole cell.");
+  CommandLine line{
+      "Joins the shares of a cell that several daemons watch, and publishes the whole cell.",
+      kFooter};
   Arguments arguments;
-  add_options(app, arguments);
-  if (const auto done = parse(app, argc, argv)) return *done;
+  add_options(line, arguments);
+  if (const auto done = parse(line, argc, argv)) return *done;
   start_log("clearance-merge", arguments.log_level);
   auto cell = cell_or_errors(arguments.cell.read());
   if (!cell) return kBadCell;

@@ -1,6 +1,5 @@
 // clearance-record: records Clearance's topics, or converts a ROS 2 bag or a log kept as CSV, to an
 // MCAP file.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 
 #include "monitor/app/options.hpp"
@@ -42,47 +41,43 @@ std::string joint_log_of(const RecordArguments& arguments) {
 }
 
 int run(int argc, char** argv, StopSignal& stop) {
-  CLI::App app("Records every topic of Clearance, as it is on the wire, to an MCAP file.");
   RecordArguments arguments;
-  app.add_option("-o,--output", arguments.out, "The recording to write")->required();
-  CLI::Option* const cell = app.add_option(
-      "--cell", arguments.cell, "The cell file, which names domain, partition, topics and objects");
-  CLI::Option* const csv =
-      app.add_option("--from-csv", arguments.from_csv,
-                     "Convert this pose log or joint log, plain or gzip, instead of recording "
-                     "from DDS");
-  CLI::Option* const bag =
-      app.add_option("--from-bag", arguments.from_bag,
-                     "Convert the joint states and transforms of this ROS 2 bag (MCAP, .db3 or the "
-                     "folder) for the robots and objects of the cell")
-          ->excludes(csv);
-  app.add_option("--joint-topic", arguments.joint_topics,
-                 "Of the bag, take joint states of this topic; repeatable. Without it, of all that "
-                 "are named joint_states")
-      ->allow_extra_args(false)
-      ->needs(bag);
-  app.add_option("--joint", arguments.joints,
-                 "NAME=POSITION: a joint that the bag or joint log does not have stays there (rad "
-                 "or m); repeatable")
-      ->allow_extra_args(false)
-      ->needs(cell);
-  app.add_option("--seconds", arguments.seconds,
-                 "Stop after this many seconds; otherwise on Ctrl-C")
-      ->check(positive_number())
-      ->excludes(csv)
-      ->excludes(bag);
-  app.add_flag("--scene", arguments.scene,
-               "Record the scene as well, as ROS 2 transforms and markers at 60 Hz: /tf, "
-               "/clearance/bodies, /clearance/closest. Foxglove, Lichtblick and their like then "
-               "show the recording in 3D")
-      ->needs(cell)
-      ->excludes(csv)
-      ->excludes(bag);
-  add_force(app, arguments.force);
-  arguments.recording.add_to(app, "--");
-  arguments.dds.add_to(app);
-  app.footer(kFooter);
-  if (const auto done = parse(app, argc, argv)) return *done;
+  CommandLine line{"Records every topic of Clearance, as it is on the wire, to an MCAP file.",
+                   kFooter};
+  line.add({
+      {"-o,--output", &arguments.out, "The recording to write", required()},
+      {"--cell", &arguments.cell,
+       "The cell file, which names domain, partition, topics and objects"},
+      {"--from-csv", &arguments.from_csv,
+       "Convert this pose log or joint log, plain or gzip, instead of recording from DDS"},
+      {"--from-bag", &arguments.from_bag,
+       "Convert the joint states and transforms of this ROS 2 bag (MCAP, .db3 or the folder) for "
+       "the robots and objects of the cell",
+       excluding("--from-csv")},
+      {"--joint-topic", &arguments.joint_topics,
+       "Of the bag, take joint states of this topic; repeatable. Without it, of all that are named "
+       "joint_states",
+       needing("--from-bag")},
+      {"--joint", &arguments.joints,
+       "NAME=POSITION: a joint that the bag or joint log does not have stays there (rad or m); "
+       "repeatable",
+       needing("--cell")},
+      {"--seconds",
+       &arguments.seconds,
+       "Stop after this many seconds; otherwise on Ctrl-C",
+       positive_number(),
+       {.excludes = {"--from-csv", "--from-bag"}}},
+      {"--scene",
+       &arguments.scene,
+       "Record the scene as well, as ROS 2 transforms and markers at 60 Hz: /tf, "
+       "/clearance/bodies, /clearance/closest. Foxglove, Lichtblick and their like then show the "
+       "recording in 3D",
+       {.needs = {"--cell"}, .excludes = {"--from-csv", "--from-bag"}}},
+      force_option(arguments.force),
+  });
+  arguments.recording.add_to(line, "--");
+  arguments.dds.add_to(line);
+  if (const auto done = parse(line, argc, argv)) return *done;
   if (!output_is_not_an_input("clearance-record", arguments.out,
                               {arguments.from_csv, arguments.from_bag, arguments.cell}))
     return kUsage;

@@ -1,6 +1,5 @@
 // clearance-replay: publishes a recording over DDS again, runs it through the monitor and checks
 // the result, or compares two recordings.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <optional>
 
@@ -58,177 +57,172 @@ constexpr const char* kCompareFooter = R"(Exit status:
 Example:
   clearance-replay compare left.mcap right.mcap)";
 
-void add_span(CLI::App& app, RecordedSpan& span, const char* files) {
-  app.add_option("FILE", span.recordings, files)->required();
-  app.add_option("--start", span.start_s, "Begin this many seconds after the first message")
-      ->check(number_from_zero());
-  app.add_option("--end", span.end_s, "End this many seconds after the first message")
-      ->check(number_from_zero());
+void add_span(CommandLine& line, RecordedSpan& span, const char* files) {
+  line.add({
+      {"FILE", &span.recordings, files, required()},
+      {"--start", &span.start_s, "Begin this many seconds after the first message",
+       number_from_zero()},
+      {"--end", &span.end_s, "End this many seconds after the first message", number_from_zero()},
+  });
 }
 
-CLI::App* add_publish(CLI::App& app, PublishArguments& arguments) {
-  CLI::App* const publish =
-      app.add_subcommand("publish", "Publish a recording over DDS with its original timing");
-  add_span(*publish, arguments.span, "The recording (MCAP), or its files in their order");
-  publish->add_option("--cell", arguments.cell,
-                      "A cell file; only its DDS domain and partition are used");
-  publish->add_option("--rate", arguments.rate, "Speed, in multiples of the recorded speed")
-      ->check(positive_number())
-      ->capture_default_str();
-  publish->add_option("--wait", arguments.wait_s, "Wait this many seconds for a first reader")
-      ->check(number_from_zero())
-      ->capture_default_str();
-  publish->add_option("--only", arguments.only, "Publish this topic only; repeatable")
-      ->allow_extra_args(false);
-  publish->add_flag(
-      "--restamp", arguments.restamp,
-      "Move the stamps of poses and joint states to now, so that a running daemon accepts them as "
-      "fresh. Velocities are scaled with --rate; the daemon refuses objects that are then faster "
-      "than the cell says");
-  arguments.dds.add_to(*publish);
-  publish->footer(kPublishFooter);
-  return publish;
+CommandLine publish_line(PublishArguments& arguments) {
+  CommandLine line{.about = "Publish a recording over DDS with its original timing",
+                   .footer = kPublishFooter,
+                   .name = "publish"};
+  add_span(line, arguments.span, "The recording (MCAP), or its files in their order");
+  line.add({
+      {"--cell", &arguments.cell, "A cell file; only its DDS domain and partition are used"},
+      {"--rate", &arguments.rate, "Speed, in multiples of the recorded speed", positive_number(),
+       shown()},
+      {"--wait", &arguments.wait_s, "Wait this many seconds for a first reader", number_from_zero(),
+       shown()},
+      {"--only", &arguments.only, "Publish this topic only; repeatable"},
+      {"--restamp", &arguments.restamp,
+       "Move the stamps of poses and joint states to now, so that a running daemon accepts them as "
+       "fresh. Velocities are scaled with --rate; the daemon refuses objects that are then faster "
+       "than the cell says"},
+  });
+  arguments.dds.add_to(line);
+  return line;
 }
 
 // The cell, or a robot in its place.
-void add_cell(CLI::App& app, CheckArguments& arguments) {
-  CLI::Option* const cell = app.add_option(
-      "--cell", arguments.cell, "The cell file; otherwise the cell that is kept in the recording");
-  app.add_option(
-         "--urdf", arguments.robot.urdf,
-         "A robot's URDF, xacro expanded, instead of a cell file: the robot stands in the "
-         "world, and every pair of its links is watched. Without --urdf and --cell, a bag's "
-         "topic robot_description is used")
-      ->excludes(cell);
-  app.add_option("--srdf", arguments.robot.srdf,
-                 "The robot's SRDF, which disables pairs; without it, a link may touch the nearest "
-                 "link above it that has shapes")
-      ->excludes(cell);
-  add_packages(app, arguments.robot.packages)->excludes(cell);
-  app.add_option("--age-limit-ms", arguments.robot.age_limit_ms,
-                 "An older joint position makes the links after that joint stale")
-      ->check(positive_number())
-      ->capture_default_str()
-      ->excludes(cell);
+void add_cell(CommandLine& line, CheckArguments& arguments) {
+  line.add({
+      {"--cell", &arguments.cell,
+       "The cell file; otherwise the cell that is kept in the recording"},
+      {"--urdf", &arguments.robot.urdf,
+       "A robot's URDF, xacro expanded, instead of a cell file: the robot stands in the world, and "
+       "every pair of its links is watched. Without --urdf and --cell, a bag's topic "
+       "robot_description is used",
+       excluding("--cell")},
+      {"--srdf", &arguments.robot.srdf,
+       "The robot's SRDF, which disables pairs; without it, a link may touch the nearest link "
+       "above it that has shapes",
+       excluding("--cell")},
+      packages_option(arguments.robot.packages, {"--cell"}),
+      {"--age-limit-ms",
+       &arguments.robot.age_limit_ms,
+       "An older joint position makes the links after that joint stale",
+       positive_number(),
+       {.shows_default = true, .excludes = {"--cell"}}},
+  });
+}
+
+void add_expectations(CommandLine& line, CheckArguments& arguments) {
+  line.add({
+      {"--expect-min-distance", &arguments.expect_min_distance,
+       "Every pair's distance is certified to be at least this, m, in every tick and at every "
+       "instant since the tick before. At the end of the recording, an object may have been late "
+       "for up to 1 s, as after its driver's end: its pairs then count only where they are "
+       "certainly too near",
+       finite_number()},
+      {"--between",
+       &arguments.between,
+       "Only these pairs: A,B of two objects or groups, or a zone; with '=METRES' a distance of "
+       "their own. Repeatable. Example: --between arm,table=0.02",
+       {.value_name = "A,B[=METRES]"}},
+      {"--allow-unknown", &arguments.allow_unknown,
+       "The share of judged ticks, 0 to 1, in which a pair may be unknown. Ticks count from the "
+       "first one in which all objects are known and on time",
+       number_in(0.0, 1.0)},
+      {"--expect-no-zone", &arguments.expect_no_zone, "This zone is never active; repeatable"},
+  });
+}
+
+void add_comparisons(CommandLine& line, CheckArguments& arguments) {
+  line.add({
+      {"--evaluate-all", &arguments.evaluate_all,
+       "Evaluate every pair in every tick, whatever the cell's budget. Otherwise pairs that a tick "
+       "did not evaluate have the status 'carried' and true bounds"},
+      {"--compare", &arguments.compare,
+       "Compare with the recorded reports and zones, to the bit, and name the first tick and field "
+       "that differs",
+       excluding("--evaluate-all")},
+      {"--compare-bounds", &arguments.compare_bounds,
+       "Compare certified values only: recorded and replayed bounds of a pair must overlap",
+       excluding("--compare")},
+      {"--reference", &arguments.reference,
+       "Compare every pair's distance and bounds with this table (CSV, plain or gzip: "
+       "t_ns,object_a,object_b,distance in m), where 0 is contact or penetration. Evaluates all "
+       "pairs",
+       excluding("--compare")},
+      {"--tolerance", &arguments.tolerance,
+       "Error of the reference, m: distances may differ by it, and may lie outside of the bounds "
+       "by it. Default: distances may differ by 1e-6, and the bounds must hold the reference as "
+       "written, to half a unit of its last digit",
+       number_from_zero(), needing("--reference")},
+      {"--true-meshes", &arguments.true_meshes,
+       "The reference is of the meshes themselves: our distances may be smaller by the stated "
+       "errors of both objects' parts (clearance-scene report)",
+       needing("--reference")},
+  });
+}
+
+void add_outputs(CommandLine& line, CheckArguments& arguments) {
+  line.add({
+      {"-o,--output", &arguments.out, "Write the reports to this recording"},
+      {"--csv", &arguments.csv, "Write a table with one row per tick and pair"},
+      {"--published", &arguments.published,
+       "Write only pairs that the cell publishes into the table", needing("--csv")},
+      {"--gradients", &arguments.gradients,
+       "Compute gradients of distances by joint positions for -o, as 'gradients: true' in the cell "
+       "does"},
+      force_option(arguments.force),
+      {"--balance",
+       &arguments.balance,
+       "Print the key 'shares' that divides the cell among so many daemons of the same cost, by "
+       "what this run has evaluated",
+       whole_number_in(1, kMaxShares),
+       {.excludes = {"--evaluate-all", "--reference"}}},
+  });
 }
 
 // For bags, joint logs and other recordings without the ticks of a daemon.
-void add_inputs(CLI::App& app, CheckArguments& arguments) {
-  app.add_option("--tick-hz", arguments.tick_hz,
-                 "Tick rate, Hz; 0: one tick per message. Default: the cell's rate for bags and "
-                 "joint logs, 0 for recordings without reports. Recordings with reports always use "
-                 "their own ticks")
-      ->check(number_from_zero());
-  app.add_option("--joint-topic", arguments.joint_topics,
-                 "Use joint states of this topic of the bag, for example /left/joint_states; "
-                 "repeatable. Default: every topic named joint_states")
-      ->allow_extra_args(false);
-  app.add_option("--joint", arguments.joints,
-                 "NAME=POSITION, rad or m: the position of a joint that the bag or joint log does "
-                 "not have; repeatable")
-      ->allow_extra_args(false);
+void add_inputs(CommandLine& line, CheckArguments& arguments) {
+  line.add({
+      {"--tick-hz", &arguments.tick_hz,
+       "Tick rate, Hz; 0: one tick per message. Default: the cell's rate for bags and joint logs, "
+       "0 for recordings without reports. Recordings with reports always use their own ticks",
+       number_from_zero()},
+      {"--joint-topic", &arguments.joint_topics,
+       "Use joint states of this topic of the bag, for example /left/joint_states; repeatable. "
+       "Default: every topic named joint_states"},
+      {"--joint", &arguments.joints,
+       "NAME=POSITION, rad or m: the position of a joint that the bag or joint log does not have; "
+       "repeatable"},
+  });
 }
 
-void add_outputs(CLI::App& app, CheckArguments& arguments) {
-  app.add_option("-o,--output", arguments.out, "Write the reports to this recording");
-  CLI::Option* const csv =
-      app.add_option("--csv", arguments.csv, "Write a table with one row per tick and pair");
-  app.add_flag("--published", arguments.published,
-               "Write only pairs that the cell publishes into the table")
-      ->needs(csv);
-  app.add_flag("--gradients", arguments.gradients,
-               "Compute gradients of distances by joint positions for -o, as 'gradients: true' in "
-               "the cell does");
-  add_force(app, arguments.force);
-}
-
-void add_balance(CLI::App& app, CheckArguments& arguments) {
-  app.add_option("--balance", arguments.balance,
-                 "Print the key 'shares' that divides the cell among so many daemons of the same "
-                 "cost, by what this run has evaluated")
-      ->check(CLI::Range(std::size_t{1}, kMaxShares))
-      ->excludes("--evaluate-all")
-      ->excludes("--reference");
-}
-
-void add_expectations(CLI::App& app, CheckArguments& arguments) {
-  app.add_option(
-         "--expect-min-distance", arguments.expect_min_distance,
-         "Every pair's distance is certified to be at least this, m, in every tick and at "
-         "every instant since the tick before. At the end of the recording, an object may have "
-         "been late for up to 1 s, as after its driver's end: its pairs then count only "
-         "where they are certainly too near")
-      ->check(finite_number());
-  app.add_option("--between", arguments.between,
-                 "Only these pairs: A,B of two objects or groups, or a zone; with '=METRES' a "
-                 "distance of their own. Repeatable. Example: --between arm,table=0.02")
-      ->type_name("A,B[=METRES]")
-      ->allow_extra_args(false);
-  app.add_option("--allow-unknown", arguments.allow_unknown,
-                 "The share of judged ticks, 0 to 1, in which a pair may be unknown. Ticks count "
-                 "from the first one in which all objects are known and on time")
-      ->check(CLI::Range(0.0, 1.0));
-  app.add_option("--expect-no-zone", arguments.expect_no_zone,
-                 "This zone is never active; repeatable")
-      ->allow_extra_args(false);
-  CLI::Option* const evaluate_all =
-      app.add_flag("--evaluate-all", arguments.evaluate_all,
-                   "Evaluate every pair in every tick, whatever the cell's budget. Otherwise pairs "
-                   "that a tick did not evaluate have the status 'carried' and true bounds");
-  CLI::Option* const compare =
-      app.add_flag("--compare", arguments.compare,
-                   "Compare with the recorded reports and zones, to the bit, and name the first "
-                   "tick and field that differs")
-          ->excludes(evaluate_all);
-  app.add_flag("--compare-bounds", arguments.compare_bounds,
-               "Compare certified values only: recorded and replayed bounds of a pair must overlap")
-      ->excludes(compare);
-  CLI::Option* const reference =
-      app.add_option(
-             "--reference", arguments.reference,
-             "Compare every pair's distance and bounds with this table (CSV, plain or gzip: "
-             "t_ns,object_a,object_b,distance in m), where 0 is contact or penetration. "
-             "Evaluates all pairs")
-          ->excludes(compare);
-  app.add_option(
-         "--tolerance", arguments.tolerance,
-         "Error of the reference, m: distances may differ by it, and may lie outside of "
-         "the bounds by it. Default: distances may differ by 1e-6, and the bounds must hold "
-         "the reference as written, to half a unit of its last digit")
-      ->needs(reference)
-      ->check(number_from_zero());
-  app.add_flag("--true-meshes", arguments.true_meshes,
-               "The reference is of the meshes themselves: our distances may be smaller by the "
-               "stated errors of both objects' parts (clearance-scene report)")
-      ->needs(reference);
-}
-
-CLI::App* add_check(CLI::App& app, CheckArguments& arguments) {
-  CLI::App* const check = app.add_subcommand(
-      "check",
-      "Run a recording or a bag through the monitor, without DDS or a clock, as fast as possible");
-  add_span(*check, arguments.span,
+CommandLine check_line(CheckArguments& arguments) {
+  CommandLine line{
+      .about =
+          "Run a recording or a bag through the monitor, without DDS or a clock, as fast as "
+          "possible",
+      .footer = kCheckFooter,
+      .name = "check"};
+  add_span(line, arguments.span,
            "The recording (MCAP), or its files in their order; a ROS 2 bag (MCAP, .db3, or the "
            "folder); or joint positions as CSV: t_ns and a column per joint");
-  add_cell(*check, arguments);
-  add_expectations(*check, arguments);
-  add_outputs(*check, arguments);
-  add_balance(*check, arguments);
-  add_inputs(*check, arguments);
-  check->footer(kCheckFooter);
-  return check;
+  add_cell(line, arguments);
+  add_expectations(line, arguments);
+  add_comparisons(line, arguments);
+  add_outputs(line, arguments);
+  add_inputs(line, arguments);
+  return line;
 }
 
-CLI::App* add_compare(CLI::App& app, CompareArguments& arguments) {
-  CLI::App* const compare =
-      app.add_subcommand("compare",
-                         "Name the first difference of two recordings, such as those of two "
-                         "daemons, and whether it is "
-                         "one of their inputs or of their results");
-  compare->add_option("FIRST", arguments.first, "A recording (MCAP)")->required();
-  compare->add_option("SECOND", arguments.second, "The other recording (MCAP)")->required();
-  compare->footer(kCompareFooter);
-  return compare;
+CommandLine compare_line(CompareArguments& arguments) {
+  return {.about =
+              "Name the first difference of two recordings, such as those of two daemons, and "
+              "whether it is one of their inputs or of their results",
+          .footer = kCompareFooter,
+          .name = "compare",
+          .options = {
+              {"FIRST", &arguments.first, "A recording (MCAP)", required()},
+              {"SECOND", &arguments.second, "The other recording (MCAP)", required()},
+          }};
 }
 
 bool is_forwards(const RecordedSpan& span) {
@@ -238,19 +232,18 @@ bool is_forwards(const RecordedSpan& span) {
 }
 
 int run(int argc, char** argv, StopSignal& stop) {
-  CLI::App app("Publishes a recording again, checks a robot program against one, or compares two.");
   PublishArguments publish;
   CheckArguments check;
   CompareArguments compare;
-  const CLI::App* const publishing = add_publish(app, publish);
-  add_check(app, check);
-  const CLI::App* const comparing = add_compare(app, compare);
-  app.require_subcommand(1);
-  app.footer(kExamples);
-  if (const auto done = parse(app, argc, argv)) return *done;
-  if (comparing->parsed()) return compare_two_recordings(compare, stop);
-  if (!is_forwards(publishing->parsed() ? publish.span : check.span)) return kUsage;
-  return publishing->parsed() ? publish_recording(publish, stop) : check_recording(check, stop);
+  CommandLine line{
+      "Publishes a recording again, checks a robot program against one, or compares two.",
+      kExamples};
+  line.subcommands = {publish_line(publish), check_line(check), compare_line(compare)};
+  if (const auto done = parse(line, argc, argv)) return *done;
+  if (line.chosen == "compare") return compare_two_recordings(compare, stop);
+  const bool publishes = line.chosen == "publish";
+  if (!is_forwards(publishes ? publish.span : check.span)) return kUsage;
+  return publishes ? publish_recording(publish, stop) : check_recording(check, stop);
 }
 
 }  // namespace

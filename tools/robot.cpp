@@ -4,9 +4,6 @@
 // or compares the distances to what cameras see with the truth.
 #include <fmt/format.h>
 
-#include <spdlog/spdlog.h>
-
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cctype>
 #include <cmath>
@@ -21,7 +18,7 @@
 
 #include "monitor/app/cell_arguments.hpp"
 #include "monitor/app/log.hpp"
-#include "monitor/app/log_lines.hpp"
+#include "monitor/app/log_line.hpp"
 #include "monitor/app/options.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
@@ -63,7 +60,6 @@ A person walks up to the robot, seen by the cameras of a cell, and the distances
 Latency at every phase between the robot's cycle and the daemon's (997 Hz drifts against 1000 Hz):
   clearance-robot config/cells/two_arms.yaml --partition lab --seconds 60 --rate 997 --latency)";
 
-constexpr const char* kRosJointStates = "/joint_states";
 constexpr std::uint64_t kFollowEvery = 64;  // batches between two looks at the clocks
 
 struct Arguments {
@@ -94,102 +90,83 @@ std::optional<std::pair<std::uint32_t, std::uint32_t>> size_of(const std::string
   return std::pair(columns, rows);
 }
 
-void add_camera_options(CLI::App& app, Arguments& arguments) {
-  SimulatedCameraOptions& cameras = arguments.cameras;
-  const char* const kCameras = "Cameras (the cell's `sensors`)";
-  app.add_option("--camera-rate", cameras.rate_hz, "Frames per second; 0: no camera is simulated")
-      ->check(finite_number())
-      ->check(CLI::Range(0.0, 1000.0))
-      ->capture_default_str()
-      ->group(kCameras);
-  app.add_option("--camera-size", arguments.camera_size, "Columns and rows of their pictures")
-      ->check([](const std::string& text) {
-        return size_of(text) ? std::string()
-                             : fmt::format("found '{}'; expected COLUMNSxROWS: 640x480", text);
-      })
-      ->capture_default_str()
-      ->group(kCameras);
-  app.add_option("--camera-noise", cameras.noise_share,
-                 "Noise as a share of the depth_error that the cell states")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str()
-      ->group(kCameras);
-  app.add_option("--camera-missing", cameras.missing_share, "Share of the pixels that are missing")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str()
-      ->group(kCameras);
-  app.add_option("--person", arguments.people,
-                 "A person whom the cell does not know walks along these points in the world, m, "
-                 "reaches out a hand at the last one, and walks back: X,Y:X,Y or X,Y,Z:X,Y,Z with "
-                 "the height Z of the floor; repeatable")
-      ->allow_extra_args(false)
-      ->check([](const std::string& text) {
-        const auto path = read_walking_path(text);
-        const auto* const fault = std::get_if<std::string>(&path);
-        return fault != nullptr ? *fault : std::string();
-      })
-      ->group(kCameras);
-  app.add_option("--person-speed", arguments.person_speed, "Of walking, m/s")
-      ->check(CLI::Range(0.05, 5.0))
-      ->capture_default_str()
-      ->group(kCameras);
-  app.add_flag("--truth", arguments.truth,
-               "Read the reports too, and compare the bounds of published pairs with a camera with "
-               "the distance of the surface that the camera truly saw")
-      ->group(kCameras);
+std::string fault_of_path(const std::string& text) {
+  const auto path = read_walking_path(text);
+  const auto* const fault = std::get_if<std::string>(&path);
+  return fault != nullptr ? *fault : std::string();
 }
 
-void add_options(CLI::App& app, Arguments& arguments) {
-  arguments.cell.add_to(app);
-  app.add_option("--joints", arguments.joints,
-                 "Robots follow this CSV: t_ns, and a column a joint, rad or m; plain or gzip. "
-                 "Otherwise every joint swings through its range");
-  app.add_option("--swing", arguments.swing,
-                 "Share of its range through which every joint swings, without --joints")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  app.add_option("--ros", arguments.robot.ros_topic,
-                 "Send joints as ROS 2 does, on this topic; --ros alone: /joint_states")
-      ->expected(0, 1)
-      ->default_str(kRosJointStates)
-      ->option_text("[TOPIC]")
-      ->check([](const std::string& topic) {
-        // ROS 2 permits no other characters: the path of a cell has a dot.
-        const auto is_allowed = [](char c) {
-          return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '/';
-        };
-        return topic.starts_with('/') && topic.size() > 1 && std::ranges::all_of(topic, is_allowed)
-                   ? std::string()
-                   : fmt::format(
-                         "found '{}'; expected a topic with its namespace: "
-                         "/joint_states; or, for that one, nothing: the cell stands "
-                         "before --ros",
-                         topic);
-      });
-  app.add_option("--rate", arguments.rate_hz, "Batches per second")
-      ->check(finite_number())
-      ->check(CLI::Range(0.1, 10000.0))
-      ->capture_default_str();
-  app.add_option("--seconds", arguments.seconds,
-                 "Stop after this time; 0: run until a signal comes, or the log of --joints ends")
-      ->check(number_from_zero());
-  app.add_option("--source", arguments.robot.source, "Name of this source, 1 to 32 bytes")
-      ->check([](const std::string& name) {
-        return !name.empty() && name.size() <= kMaxSourceLength
-                   ? std::string()
-                   : fmt::format("found '{}', {} bytes; expected a name of 1 to {}", name,
-                                 name.size(), kMaxSourceLength);
-      })
-      ->capture_default_str();
-  app.add_flag(
-      "--latency", arguments.latency,
-      "Read the reports too, and print the delay from a batch to the first report that uses it");
-  add_camera_options(app, arguments);
-  app.add_option("--priority", arguments.priority, "Run under SCHED_FIFO")
-      ->check(CLI::Range(1, 99));
-  arguments.dds.add_to(app);
-  add_log_level(app, arguments.log_level);
-  app.footer(kFooter);
+// ROS 2 permits no other characters: the path of a cell has a dot.
+bool is_ros_topic(const std::string& topic) {
+  const auto is_allowed = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '/';
+  };
+  return topic.starts_with('/') && topic.size() > 1 && std::ranges::all_of(topic, is_allowed);
+}
+
+void add_camera_options(CommandLine& line, Arguments& arguments) {
+  SimulatedCameraOptions& cameras = arguments.cameras;
+  const OptionRule rule{.group = "Cameras (the cell's `sensors`)"};
+  const OptionRule with_default{.shows_default = true, .group = rule.group};
+  line.add({
+      {"--camera-rate", &cameras.rate_hz, "Frames per second; 0: no camera is simulated",
+       number_in(0.0, 1000.0), with_default},
+      {"--camera-size", &arguments.camera_size, "Columns and rows of their pictures",
+       expecting("COLUMNSxROWS: 640x480",
+                 [](const std::string& text) { return size_of(text).has_value(); }),
+       with_default},
+      {"--camera-noise", &cameras.noise_share,
+       "Noise as a share of the depth_error that the cell states", number_in(0.0, 1.0),
+       with_default},
+      {"--camera-missing", &cameras.missing_share, "Share of the pixels that are missing",
+       number_in(0.0, 1.0), with_default},
+      {"--person", &arguments.people,
+       "A person whom the cell does not know walks along these points in the world, m, reaches out "
+       "a hand at the last one, and walks back: X,Y:X,Y or X,Y,Z:X,Y,Z with the height Z of the "
+       "floor; repeatable",
+       Check{fault_of_path}, rule},
+      {"--person-speed", &arguments.person_speed, "Of walking, m/s", number_in(0.05, 5.0),
+       with_default},
+      {"--truth", &arguments.truth,
+       "Read the reports too, and compare the bounds of published pairs with a camera with the "
+       "distance of the surface that the camera truly saw",
+       rule},
+  });
+}
+
+void add_options(CommandLine& line, Arguments& arguments) {
+  arguments.cell.add_to(line);
+  line.add({
+      {"--joints", &arguments.joints,
+       "Robots follow this CSV: t_ns, and a column a joint, rad or m; plain or gzip. Otherwise "
+       "every joint swings through its range"},
+      {"--swing", &arguments.swing,
+       "Share of its range through which every joint swings, without --joints", number_in(0.0, 1.0),
+       shown()},
+      {"--ros",
+       &arguments.robot.ros_topic,
+       "Send joints as ROS 2 does, on this topic; --ros alone: /joint_states",
+       expecting("a topic with its namespace: /joint_states; or, for that one, nothing: the cell "
+                 "stands before --ros",
+                 is_ros_topic),
+       {.value_name = "[TOPIC]", .value_alone = "/joint_states"}},
+      {"--rate", &arguments.rate_hz, "Batches per second", number_in(0.1, 10000.0), shown()},
+      {"--seconds", &arguments.seconds,
+       "Stop after this time; 0: run until a signal comes, or the log of --joints ends",
+       number_from_zero()},
+      {"--source", &arguments.robot.source, "Name of this source, 1 to 32 bytes",
+       expecting(fmt::format("a name of 1 to {} bytes", kMaxSourceLength),
+                 [](const std::string& name) {
+                   return !name.empty() && name.size() <= kMaxSourceLength;
+                 }),
+       shown()},
+      {"--latency", &arguments.latency,
+       "Read the reports too, and print the delay from a batch to the first report that uses it"},
+  });
+  add_camera_options(line, arguments);
+  line.add({{"--priority", &arguments.priority, "Run under SCHED_FIFO", whole_number_in(1, 99)}});
+  arguments.dds.add_to(line);
+  line.add({log_level_option(arguments.log_level)});
 }
 
 // Sends at absolute deadlines until it is stopped; returns the delays of its wake-ups.
@@ -231,7 +208,7 @@ class Cameras {
           const JointMotion& motion, const SimulationTime& time) {
     if (cell.scene.sensors.empty() || arguments.cameras.rate_hz == 0.0) return;
     if (const std::string fault = fault_of(cell, arguments.cameras); !fault.empty()) {
-      spdlog::warn("no camera is simulated: {}", fault);
+      log_text(LogLevel::kWarn, fmt::format("no camera is simulated: {}", fault));
       return;
     }
     const SimulatedWorld world(cell, motion, people_of(cell, arguments));
@@ -240,8 +217,10 @@ class Cameras {
                      [this](const SentFrame& frame) {
                        if (truth_) truth_->sent(frame);
                      });
-    spdlog::info("{} of {} x {} pixels at {} Hz", counted(cell.scene.sensors.size(), "camera"),
-                 arguments.cameras.columns, arguments.cameras.rows, arguments.cameras.rate_hz);
+    log_text(
+        LogLevel::kInfo,
+        fmt::format("{} of {} x {} pixels at {} Hz", counted(cell.scene.sensors.size(), "camera"),
+                    arguments.cameras.columns, arguments.cameras.rows, arguments.cameras.rate_hz));
   }
 
   void tell() {
@@ -259,12 +238,14 @@ class Cameras {
     for (const std::string& text : arguments.people) {
       people.emplace_back(std::get<WalkingPath>(read_walking_path(text)), arguments.person_speed);
       const double fastest = people.back().max_speed();
-      spdlog::info("a person walks; no point of it is faster than {:.2f} m/s", fastest);
+      log_text(LogLevel::kInfo,
+               fmt::format("a person walks; no point of it is faster than {:.2f} m/s", fastest));
       for (const Sensor& sensor : cell.scene.sensors) {
         const double stated = cell.scene.objects[sensor.object].max_speed;
         if (stated < fastest)
-          spdlog::warn("{} states a max_speed of {} m/s, which this person exceeds", sensor.name,
-                       stated);
+          log_text(LogLevel::kWarn,
+                   fmt::format("{} states a max_speed of {} m/s, which this person exceeds",
+                               sensor.name, stated));
       }
     }
     return people;
@@ -280,7 +261,7 @@ int run_robot(const Cell& cell, const Arguments& arguments, JointMotion motion,
   // Every later thread inherits this, Cyclone's as well.
   if (arguments.priority > 0) {
     if (const Refusal refusal = use_fifo_scheduling(arguments.priority)) {
-      spdlog::warn("{}", *refusal);
+      log_text(LogLevel::kWarn, *refusal);
     }
   }
   route_dds_log();
@@ -292,8 +273,9 @@ int run_robot(const Cell& cell, const Arguments& arguments, JointMotion motion,
   SimulatedRobot robot(cell, connection, arguments.robot, motion);
   std::optional<LatencyMeter> latency;
   if (arguments.latency) latency.emplace(connection);
-  spdlog::info("source '{}' sends {} at {} Hz on {}", arguments.robot.source, inputs_of(robot),
-               arguments.rate_hz, connection.where());
+  log_text(LogLevel::kInfo,
+           fmt::format("source '{}' sends {} at {} Hz on {}", arguments.robot.source,
+                       inputs_of(robot), arguments.rate_hz, connection.where()));
   Cameras cameras(cell, connection, arguments, motion, time);
 
   std::atomic<bool> stop{false}, done{false};
@@ -315,10 +297,10 @@ int run_robot(const Cell& cell, const Arguments& arguments, JointMotion motion,
 }
 
 int run(int argc, char** argv, StopSignal& signal) {
-  CLI::App app("Simulates a robot: moves a cell's objects and joints over DDS.");
+  CommandLine line{"Simulates a robot: moves a cell's objects and joints over DDS.", kFooter};
   Arguments arguments;
-  add_options(app, arguments);
-  if (const auto done = parse(app, argc, argv)) return *done;
+  add_options(line, arguments);
+  if (const auto done = parse(line, argc, argv)) return *done;
   std::tie(arguments.cameras.columns, arguments.cameras.rows) = *size_of(arguments.camera_size);
   start_log("clearance-robot", arguments.log_level);
   const auto cell = cell_or_errors(arguments.cell.read());
@@ -344,10 +326,12 @@ int run(int argc, char** argv, StopSignal& signal) {
     print(stderr, "clearance-robot: {}\n", log.error());
     return kBadCell;
   }
-  if (!log.note().empty()) spdlog::warn("{}: {}", arguments.joints, log.note());
+  if (!log.note().empty())
+    log_text(LogLevel::kWarn, fmt::format("{}: {}", arguments.joints, log.note()));
   if (arguments.seconds == 0.0) {
     arguments.seconds = log.seconds();
-    spdlog::info("{} lasts {:.3f} s; after that this ends", arguments.joints, arguments.seconds);
+    log_text(LogLevel::kInfo, fmt::format("{} lasts {:.3f} s; after that this ends",
+                                          arguments.joints, arguments.seconds));
   }
   return run_robot(
       *cell, arguments, [log](double t_s, auto& joints) mutable { log.at(t_s, joints); }, signal);

@@ -1,6 +1,5 @@
 // clearance-scene writes cell files of a robot or of a generated warehouse. It also proposes the
 // pairs of a robot's links that may touch, and reports the models of objects.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <exception>
@@ -31,119 +30,103 @@ Examples:
   clearance-scene report warehouse.yaml
   clearance-scene send --change 'attach: {object: part, to: left_hand}')";
 
-void add_robot(CLI::App& app, RobotCellOptions& robot, const char* srdf) {
-  app.add_option("URDF", robot.urdf, "The robot's URDF, with xacro expanded")
-      ->required()
-      ->check(CLI::ExistingFile);
-  app.add_option("--srdf", robot.srdf, srdf)->check(CLI::ExistingFile);
-  add_packages(app, robot.packages);
+std::vector<Option> robot_options(RobotCellOptions& robot, const char* srdf) {
+  return {
+      {"URDF", &robot.urdf, "The robot's URDF, with xacro expanded", existing_file(), required()},
+      {"--srdf", &robot.srdf, srdf, existing_file()},
+      packages_option(robot.packages)};
 }
 
-CLI::App* add_import(CLI::App& app, ImportArguments& arguments) {
-  CLI::App* const import = app.add_subcommand(
-      "import", "Write a cell file of a robot from its URDF (collision shapes) and SRDF");
+CommandLine import_line(ImportArguments& arguments) {
   RobotCellOptions& robot = arguments.robot;
-  add_robot(*import, robot,
-            "The robot's SRDF, which disables pairs, with reasons; without it, pairs of links that "
-            "a joint connects are left out");
-  import
-      ->add_option("-o,--output", arguments.output,
-                   "The cell file to write; mesh paths are relative to it")
-      ->required();
-  CLI::Option* const max_speed =
-      import
-          ->add_option(
-              "--max-speed", robot.max_speed,
-              "Speed that no point of the robot exceeds, m/s; without it, bounds are unknown "
-              "while poses are late")
-          ->check(number_from_zero());
-  import->add_option("--age-limit-ms", robot.age_limit_ms, "Maximum age of a pose, ms")
-      ->check(positive_number())
-      ->capture_default_str();
-  import
-      ->add_option("--mesh-tolerance", robot.mesh_tolerance,
-                   "Aim for the error of a mesh's convex parts, m; default 0.005")
-      ->check(positive_number());
-  import
-      ->add_option("--max-parts", robot.max_parts,
-                   "Largest number of parts per mesh; default 24; 1: one hull per mesh")
-      ->check(CLI::Range(1u, 64u));
-  CLI::Option* const joints = import->add_flag(
-      "--joints", arguments.joints,
-      "Write the cell of a robot that joint states drive, as clearanced --urdf runs it, to start "
-      "from. Without it, each link is an object, and its pose has to arrive");
-  joints->excludes(max_speed);
-  add_force(*import, arguments.force);
-  return import;
+  CommandLine line{
+      .about = "Write a cell file of a robot from its URDF (collision shapes) and SRDF",
+      .name = "import"};
+  line.add(robot_options(robot,
+                         "The robot's SRDF, which disables pairs, with reasons; without it, pairs "
+                         "of links that a joint connects are left out"));
+  line.add({
+      {"-o,--output", &arguments.output, "The cell file to write; mesh paths are relative to it",
+       required()},
+      {"--max-speed", &robot.max_speed,
+       "Speed that no point of the robot exceeds, m/s; without it, bounds are unknown while poses "
+       "are late",
+       number_from_zero()},
+      {"--age-limit-ms", &robot.age_limit_ms, "Maximum age of a pose, ms", positive_number(),
+       shown()},
+      {"--mesh-tolerance", &robot.mesh_tolerance,
+       "Aim for the error of a mesh's convex parts, m; default 0.005", positive_number()},
+      {"--max-parts", &robot.max_parts,
+       "Largest number of parts per mesh; default 24; 1: one hull per mesh",
+       whole_number_in(1, 64)},
+      {"--joints", &arguments.joints,
+       "Write the cell of a robot that joint states drive, as clearanced --urdf runs it, to start "
+       "from. Without it, each link is an object, and its pose has to arrive",
+       excluding("--max-speed")},
+      force_option(arguments.force),
+  });
+  return line;
 }
 
-CLI::App* add_allow(CLI::App& app, AllowArguments& arguments) {
-  CLI::App* const allow = app.add_subcommand(
-      "allow",
-      "Propose which pairs of a robot's links need not be watched, by sampling its joints: pairs "
-      "that are adjacent, in contact with all joints at zero, always in contact, or never within "
-      "--never-margin. 'Never' is what the samples show and no proof");
-  add_robot(*allow, arguments.robot, "Also print where this SRDF agrees with the proposal");
-  allow->add_option("-o,--output", arguments.output, "Write the proposal here; default: stdout");
-  allow->add_option("--samples", arguments.sampling.samples, "Number of joint positions to try")
-      ->check(whole_number(1, 1'000'000'000))
-      ->capture_default_str();
-  allow
-      ->add_option("--never-margin", arguments.never_margin,
-                   "Propose 'Never' only for pairs that stay farther apart than this in all "
-                   "samples, m; nearer ones are listed on stderr and stay watched")
-      ->check(number_from_zero())
-      ->capture_default_str();
-  allow->add_option("--seed", arguments.sampling.seed, "Random seed of the positions")
-      ->capture_default_str();
-  allow
-      ->add_option("--as", arguments.form,
-                   "srdf: <disable_collisions> lines; cell: the allowed_collisions of a cell")
-      ->check(CLI::IsMember({"srdf", "cell"}))
-      ->capture_default_str();
-  add_force(*allow, arguments.force);
-  return allow;
+CommandLine allow_line(AllowArguments& arguments) {
+  CommandLine line{
+      .about =
+          "Propose which pairs of a robot's links need not be watched, by sampling its joints: "
+          "pairs that are adjacent, in contact with all joints at zero, always in contact, or "
+          "never within --never-margin. 'Never' is what the samples show and no proof",
+      .name = "allow"};
+  line.add(robot_options(arguments.robot, "Also print where this SRDF agrees with the proposal"));
+  line.add({
+      {"-o,--output", &arguments.output, "Write the proposal here; default: stdout"},
+      {"--samples", &arguments.sampling.samples, "Number of joint positions to try",
+       whole_number(1, 1'000'000'000), shown()},
+      {"--never-margin", &arguments.never_margin,
+       "Propose 'Never' only for pairs that stay farther apart than this in all samples, m; nearer "
+       "ones are listed on stderr and stay watched",
+       number_from_zero(), shown()},
+      {"--seed", &arguments.sampling.seed, "Random seed of the positions", shown()},
+      {"--as", &arguments.form,
+       "srdf: <disable_collisions> lines; cell: the allowed_collisions of a cell",
+       one_word_of({"srdf", "cell"}), shown()},
+      force_option(arguments.force),
+  });
+  return line;
 }
 
-CLI::App* add_warehouse(CLI::App& app, WarehouseArguments& arguments) {
-  CLI::App* const warehouse =
-      app.add_subcommand("warehouse", "Generate the cell of a warehouse, with a simulation");
-  warehouse->add_option("OBJECTS", arguments.warehouse.objects, "Number of objects, 60 to 4096")
-      ->required()
-      ->check(CLI::Range(kLeastWarehouse, 4096u));
-  warehouse->add_option("-o,--output", arguments.output, "The cell file to write")->required();
-  warehouse->add_option("--seed", arguments.warehouse.seed, "Random seed")->capture_default_str();
-  add_force(*warehouse, arguments.force);
-  return warehouse;
+CommandLine warehouse_line(WarehouseArguments& arguments) {
+  return {.about = "Generate the cell of a warehouse, with a simulation",
+          .name = "warehouse",
+          .options = {
+              {"OBJECTS", &arguments.warehouse.objects, "Number of objects, 60 to 4096",
+               whole_number_in(kLeastWarehouse, 4096), required()},
+              {"-o,--output", &arguments.output, "The cell file to write", required()},
+              {"--seed", &arguments.warehouse.seed, "Random seed", shown()},
+              force_option(arguments.force),
+          }};
 }
 
-CLI::App* add_report(CLI::App& app, ReportArguments& arguments) {
-  CLI::App* const report = app.add_subcommand(
-      "report", "Print the models of each object of a cell: facets, certified errors, memory");
-  report->add_option("CELL", arguments.cell, "The cell file (YAML)")->required();
-  report->add_flag("--json", arguments.json, "Print JSON");
-  return report;
+CommandLine report_line(ReportArguments& arguments) {
+  return {.about = "Print the models of each object of a cell: facets, certified errors, memory",
+          .name = "report",
+          .options = {{"CELL", &arguments.cell, "The cell file (YAML)", required()},
+                      {"--json", &arguments.json, "Print JSON"}}};
 }
 
 int run(int argc, char** argv) {
-  CLI::App app("Writes cell files, reports the models of objects, and changes running scenes.");
   ImportArguments import;
   AllowArguments allow;
   WarehouseArguments warehouse;
   ReportArguments report;
   SendArguments send;
-  const CLI::App* const importing = add_import(app, import);
-  const CLI::App* const allowing = add_allow(app, allow);
-  const CLI::App* const building = add_warehouse(app, warehouse);
-  const CLI::App* const reporting = add_report(app, report);
-  add_send(app, send);
-  app.require_subcommand(1);
-  app.footer(kFooter);
-  if (const auto done = parse(app, argc, argv)) return *done;
-  if (importing->parsed()) return import_robot(std::move(import));
-  if (allowing->parsed()) return allow_collisions(allow);
-  if (building->parsed()) return make_warehouse(warehouse);
-  if (reporting->parsed()) return report_models(report);
+  CommandLine line{"Writes cell files, reports the models of objects, and changes running scenes.",
+                   kFooter};
+  line.subcommands = {import_line(import), allow_line(allow), warehouse_line(warehouse),
+                      report_line(report), send_line(send)};
+  if (const auto done = parse(line, argc, argv)) return *done;
+  if (line.chosen == "import") return import_robot(std::move(import));
+  if (line.chosen == "allow") return allow_collisions(allow);
+  if (line.chosen == "warehouse") return make_warehouse(warehouse);
+  if (line.chosen == "report") return report_models(report);
   return send_changes(send);
 }
 

@@ -1,7 +1,6 @@
 // clearance-view: a cell live in a browser, and in viewers of Foxglove's protocol.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <cstdio>
 #include <cstdlib>
@@ -79,56 +78,45 @@ struct Arguments {
   DdsArguments dds;
 };
 
-void add_options(CLI::App& app, Arguments& arguments) {
-  arguments.cell.add_to(app);
-  CLI::Option* const replay =
-      app.add_option("--replay", arguments.recording,
-                     "Show this recording (MCAP) with a time line, instead of a daemon");
-  app.add_flag("--offline", arguments.offline,
-               "Compute the reports from the recording's inputs with this cell, instead of showing "
-               "the recorded ones")
-      ->needs(replay);
-  app.add_option("--host", arguments.host,
-                 "Address to serve on; any other than loopback opens it to the network")
-      ->capture_default_str();
-  app.add_option("--port", arguments.port, "Port to serve on; 0: a free one")
-      ->capture_default_str();
-  app.add_option("--allow", arguments.allowed,
-                 "Also answer requests for this host and by its pages: NAME or NAME:PORT; or pages "
-                 "of this origin: https://NAME; repeatable")
-      ->allow_extra_args(false)
-      ->check(view::fault_of_allowed);
-  app.add_option("--metrics", arguments.metrics,
-                 "Also serve /metrics for Prometheus: those of the daemon on this machine whose "
-                 "option --metrics names this Unix socket")
-      ->excludes(replay);
-  const char* const kPictures = "Pictures";
-  CLI::Option* const screenshot =
-      app.add_option("--screenshot", arguments.screenshots,
-                     "Write a picture of the page (PNG) by Debian's chromium, and end; repeatable")
-          ->group(kPictures);
-  app.add_option(
-         "--at", arguments.at_s,
-         "Time of a picture, s: after the first report of a recording, or after the page is "
-         "loaded; one for each --screenshot")
-      ->check(number_from_zero())
-      ->needs(screenshot)
-      ->group(kPictures);
-  app.add_option("--query", arguments.query,
-                 "The query of the page's address, which selects and styles, e.g. 'theme=light'")
-      ->needs(screenshot)
-      ->group(kPictures);
-  app.add_option("--width", arguments.width, "Pixels")
-      ->check(CLI::Range(320, 7680))
-      ->capture_default_str()
-      ->group(kPictures);
-  app.add_option("--height", arguments.height, "Pixels")
-      ->check(CLI::Range(240, 4320))
-      ->capture_default_str()
-      ->group(kPictures);
-  add_force(app, arguments.force);
-  arguments.dds.add_to(app);
-  app.footer(kFooter);
+void add_options(CommandLine& line, Arguments& arguments) {
+  const OptionRule picture{.needs = {"--screenshot"}, .group = "Pictures"};
+  const OptionRule shown_of_picture{.shows_default = true, .group = picture.group};
+  arguments.cell.add_to(line);
+  line.add({
+      {"--replay", &arguments.recording,
+       "Show this recording (MCAP) with a time line, instead of a daemon"},
+      {"--offline", &arguments.offline,
+       "Compute the reports from the recording's inputs with this cell, instead of showing the "
+       "recorded ones",
+       needing("--replay")},
+      {"--host", &arguments.host,
+       "Address to serve on; any other than loopback opens it to the network", shown()},
+      {"--port", &arguments.port, "Port to serve on; 0: a free one", shown()},
+      {"--allow", &arguments.allowed,
+       "Also answer requests for this host and by its pages: NAME or NAME:PORT; or pages of this "
+       "origin: https://NAME; repeatable",
+       Check{view::fault_of_allowed}},
+      {"--metrics", &arguments.metrics,
+       "Also serve /metrics for Prometheus: those of the daemon on this machine whose option "
+       "--metrics names this Unix socket",
+       excluding("--replay")},
+      {"--screenshot",
+       &arguments.screenshots,
+       "Write a picture of the page (PNG) by Debian's chromium, and end; repeatable",
+       {.takes_all = true, .group = picture.group}},
+      {"--at",
+       &arguments.at_s,
+       "Time of a picture, s: after the first report of a recording, or after the page is loaded; "
+       "one for each --screenshot",
+       number_from_zero(),
+       {.takes_all = true, .needs = picture.needs, .group = picture.group}},
+      {"--query", &arguments.query,
+       "The query of the page's address, which selects and styles, e.g. 'theme=light'", picture},
+      {"--width", &arguments.width, "Pixels", whole_number_in(320, 7680), shown_of_picture},
+      {"--height", &arguments.height, "Pixels", whole_number_in(240, 4320), shown_of_picture},
+      force_option(arguments.force),
+  });
+  arguments.dds.add_to(line);
 }
 
 // Returns null and says why when the recording cannot be shown.
@@ -345,10 +333,10 @@ int run_view(const std::shared_ptr<const Cell>& cell, const Arguments& arguments
 }
 
 int run(int argc, char** argv, StopSignal& stop) {
-  CLI::App app("Shows a cell in a browser: live, or from a recording.");
+  CommandLine line{"Shows a cell in a browser: live, or from a recording.", kFooter};
   Arguments arguments;
-  add_options(app, arguments);
-  if (const auto done = parse(app, argc, argv)) return *done;
+  add_options(line, arguments);
+  if (const auto done = parse(line, argc, argv)) return *done;
   for (const std::string& picture : arguments.screenshots) {
     std::vector<std::filesystem::path> inputs = arguments.cell.files();
     inputs.emplace_back(arguments.recording);

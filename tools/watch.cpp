@@ -1,7 +1,6 @@
 // clearance-watch: shows the daemon's reports live in a terminal.
 #include <fmt/format.h>
 
-#include <CLI/CLI.hpp>
 #include <cstdio>
 
 #include "monitor/app/log.hpp"
@@ -41,20 +40,17 @@ struct Arguments {
   DdsArguments dds;
 };
 
-void add_options(CLI::App& app, Arguments& arguments) {
-  app.add_option("--seconds", arguments.seconds, "Stop after this time; 0: run until Ctrl-C")
-      ->check(number_from_zero());
-  app.add_flag(
-      "--plain", arguments.plain,
-      "Print one line per second instead of a full screen; the default without a terminal");
+void add_options(CommandLine& line, Arguments& arguments) {
+  line.add({
+      {"--seconds", &arguments.seconds, "Stop after this time; 0: run until Ctrl-C",
+       number_from_zero()},
+      {"--plain", &arguments.plain,
+       "Print one line per second instead of a full screen; the default without a terminal"},
+  });
   for (const TopicKind kind : {TopicKind::kDistances, TopicKind::kCatalogue, TopicKind::kHealth,
-                               TopicKind::kZones, TopicKind::kSeparation}) {
-    const Topic& each = topic(kind);
-    app.add_option(fmt::format("--{}", each.key), arguments.topics.*each.name, "Topic name")
-        ->capture_default_str();
-  }
-  arguments.dds.add_to(app, false);
-  app.footer(kFooter);
+                               TopicKind::kZones, TopicKind::kSeparation})
+    line.add({topic_option(kind, arguments.topics)});
+  arguments.dds.add_to(line, false);
 }
 
 // Shows the feed ten times a second on a screen, or once per second in plain lines.
@@ -121,10 +117,11 @@ int run_watch(const Arguments& arguments, StopSignal& signal) {
 }
 
 int run(int argc, char** argv, StopSignal& signal) {
-  CLI::App app("Shows live how far apart the objects of a cell are, as clearanced publishes it.");
+  CommandLine line{
+      "Shows live how far apart the objects of a cell are, as clearanced publishes it.", kFooter};
   Arguments arguments;
-  add_options(app, arguments);
-  if (const auto done = parse(app, argc, argv)) return *done;
+  add_options(line, arguments);
+  if (const auto done = parse(line, argc, argv)) return *done;
   start_log("clearance-watch", "error");
   return run_watch(arguments, signal);
 }

@@ -1,40 +1,36 @@
 #include "monitor/app/cell_arguments.hpp"
 
-#include <fmt/format.h>
-
 #include "monitor/app/options.hpp"
 #include "monitor/app/program.hpp"
 
 namespace clearance {
+
 // Options of the robot are keys of the robot in a cell file.
-void CellArguments::add_to(CLI::App& app, bool from_ros) {
-  auto* what = app.add_option_group("cell", "One of");
-  auto* file = what->add_option("CELL", cell, "The cell file (YAML)");
-  what->add_option("--urdf", robot.urdf, "A robot's URDF, xacro expanded, instead of a cell file");
+void CellArguments::add_to(CommandLine& line, bool from_ros) {
+  line.one_of = {
+      {"CELL", &cell, "The cell file (YAML)"},
+      {"--urdf", &robot.urdf, "A robot's URDF, xacro expanded, instead of a cell file"},
+  };
   if (from_ros) {
-    what->add_option("--robot-description", description_topic,
-                     "The topic of ROS 2 that has the URDF, /robot_description, instead of a file")
-        ->check([](const std::string& topic) {
-          return topic.starts_with('/') && topic.size() > 1
-                     ? std::string()
-                     : fmt::format(
-                           "found '{}'; expected a topic with its namespace: "
-                           "/robot_description",
-                           topic);
-        });
+    line.one_of.push_back(
+        {"--robot-description", &description_topic,
+         "The topic of ROS 2 that has the URDF, /robot_description, instead of a file",
+         expecting("a topic with its namespace: /robot_description", [](const std::string& topic) {
+           return topic.starts_with('/') && topic.size() > 1;
+         })});
   }
-  what->require_option(1);
-  app.add_option("--srdf", robot.srdf,
-                 "The robot's SRDF, which disables pairs; without it, a link and the next above it "
-                 "that has shapes may touch")
-      ->excludes(file);
-  add_packages(app, robot.packages)->excludes(file);
-  app.add_option("--age-limit-ms", robot.age_limit_ms,
-                 "An older position makes what hangs on the joint stale")
-      ->check(finite_number())
-      ->check(CLI::Range(0.001, 86'400'000.0))
-      ->capture_default_str()
-      ->excludes(file);
+  line.add({
+      {"--srdf", &robot.srdf,
+       "The robot's SRDF, which disables pairs; without it, a link and the next above it that has "
+       "shapes may touch",
+       excluding("CELL")},
+      packages_option(robot.packages, {"CELL"}),
+      {"--age-limit-ms",
+       &robot.age_limit_ms,
+       "An older position makes what hangs on the joint stale",
+       number_in(0.001, 86'400'000.0),
+       {.shows_default = true, .excludes = {"CELL"}}},
+  });
 }
 
 CellResult CellArguments::read() const {

@@ -1,11 +1,13 @@
 // The cell on a program's command line: a cell file, or a robot's URDF and SRDF.
 #pragma once
 
-#include <CLI/CLI.hpp>
+#include <filesystem>
 #include <string>
 #include <vector>
 
+#include "config/cell/cell_file.hpp"
 #include "config/write/single_robot_cell.hpp"
+#include "monitor/app/command_line.hpp"
 
 namespace clearance {
 
@@ -20,7 +22,7 @@ struct CellArguments {
 
   // Adds CELL, and --urdf with --srdf, --package and --age-limit-ms; one of CELL and --urdf is
   // required. With `from_ros`, --robot-description is a third choice.
-  void add_to(CLI::App& app, bool from_ros = false);
+  void add_to(CommandLine& line, bool from_ros = false);
   [[nodiscard]] CellResult read() const;
   // The options of read(), to read a changed text as the first one.
   [[nodiscard]] CellOptions reading() const;

@@ -25,6 +25,7 @@
 #include <utility>
 
 #include "config/text/printable.hpp"
+#include "monitor/app/log_line.hpp"
 
 namespace clearance {
 namespace {
@@ -159,6 +160,10 @@ class QueueSink final : public Sink {
   std::shared_ptr<spdlog::async_logger> logger_;
 };
 
+// By LogLevel.
+constexpr spdlog::level::level_enum kLevels[] = {spdlog::level::info, spdlog::level::warn,
+                                                 spdlog::level::err};
+
 // The program's log, from start_log() on.
 std::weak_ptr<QueueSink> the_log;
 
@@ -171,6 +176,13 @@ void start_log(const std::string& name, const std::string& level) {
   logger->set_level(spdlog::level::from_str(level));
   logger->set_error_handler([](const std::string&) {});
   spdlog::set_default_logger(std::move(logger));
+}
+
+bool is_logged(LogLevel level) { return spdlog::should_log(kLevels[static_cast<int>(level)]); }
+
+void log_text(LogLevel level, std::string_view text, std::string_view code) {
+  const std::string line = code.empty() ? std::string(text) : fmt::format("{} [{}]", text, code);
+  spdlog::default_logger_raw()->log(kLevels[static_cast<int>(level)], std::string_view(line));
 }
 
 void drain_log() {

@@ -1,92 +1,118 @@
-// Wraps conditions in CLI11 validators. Their messages read "found ...; expected ...", like those
-// about cell files.
+// The messages of checks read "found ...; expected ...", like those about cell files.
 #include "monitor/app/options.hpp"
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
+#include <string_view>
 #include <system_error>
+#include <utility>
+
+#include "config/text/sentences.hpp"
 
 namespace clearance {
 namespace {
 
-// The form of every message about an option.
-std::string unexpected(const std::string& found, const std::string& expected) {
-  return fmt::format("found '{}'; expected {}", found, expected);
+// Returns nothing for a text that is no number as a whole.
+template <class Number>
+std::optional<Number> read_as(std::string_view text) {
+  Number value{};
+  const char* const end = text.data() + text.size();
+  const auto read = std::from_chars(text.data(), end, value);
+  return read.ec == std::errc{} && read.ptr == end ? std::optional(value) : std::nullopt;
 }
 
 // CLI11 would convert more ("0x10", " 7"); numbers are decimal here, such as "1e3".
-CLI::Validator number(bool (*accepts)(double), const char* expected) {
-  const auto fault = [accepts, expected](const std::string& text) {
-    double value = 0.0;
-    const char* const begin =
-        text.data() + (text.starts_with("+") && !text.starts_with("+-") ? 1 : 0);
-    const char* const end = text.data() + text.size();
-    const auto read = std::from_chars(begin, end, value);
-    const bool whole = read.ec == std::errc{} && read.ptr == end;
-    return whole && accepts(value) ? std::string() : unexpected(text, expected);
-  };
-  return {fault, ""};
+template <class Accepts>
+Check number(const std::string& expected, Accepts accepts, const std::string& shown = "") {
+  return expecting(
+      expected,
+      [accepts](const std::string& text) {
+        const bool has_plus = text.starts_with("+") && !text.starts_with("+-");
+        const auto value = read_as<double>(std::string_view(text).substr(has_plus ? 1 : 0));
+        return value && std::isfinite(*value) && accepts(*value);
+      },
+      shown);
 }
 
 }  // namespace
 
-CLI::Validator finite_number() {
-  return number([](double value) { return std::isfinite(value); }, "a finite number");
+Check expecting(const std::string& expected, std::function<bool(const std::string&)> accepts,
+                const std::string& shown) {
+  return {[expected, accepts = std::move(accepts)](const std::string& text) {
+            return accepts(text) ? "" : fmt::format("found '{}'; expected {}", text, expected);
+          },
+          shown};
 }
-CLI::Validator positive_number() {
-  return number([](double value) { return std::isfinite(value) && value > 0.0; },
-                "a number above 0");
+
+Check finite_number() {
+  return number("a finite number", [](double) { return true; });
 }
-CLI::Validator number_from_zero() {
-  return number([](double value) { return std::isfinite(value) && value >= 0.0; },
-                "a number, 0 or more");
+Check positive_number() {
+  return number("a number above 0", [](double value) { return value > 0.0; });
+}
+Check number_from_zero() {
+  return number("a number, 0 or more", [](double value) { return value >= 0.0; });
+}
+Check number_in(double smallest, double largest) {
+  return number(
+      fmt::format("a number from {:g} to {:g}", smallest, largest),
+      [=](double value) { return smallest <= value && value <= largest; },
+      fmt::format("FLOAT in [{:g} - {:g}]", smallest, largest));
 }
 
 // This is stricter than CLI11: "1e3", "0x10" and " 7" are no whole numbers here.
-CLI::Validator whole_number(std::int64_t smallest, std::int64_t largest) {
-  const auto fault = [=](const std::string& text) {
-    std::int64_t value = 0;
-    const char* const end = text.data() + text.size();
-    const auto read = std::from_chars(text.data(), end, value);
-    const bool whole = read.ec == std::errc{} && read.ptr == end;
-    if (whole && value >= smallest && value <= largest) return std::string();
-    return unexpected(text, fmt::format("a whole number from {} to {}", smallest, largest));
-  };
-  return {fault, ""};
+Check whole_number(std::int64_t smallest, std::int64_t largest) {
+  return expecting(fmt::format("a whole number from {} to {}", smallest, largest),
+                   [=](const std::string& text) {
+                     const auto value = read_as<std::int64_t>(text);
+                     return value && *value >= smallest && *value <= largest;
+                   });
+}
+Check whole_number_in(std::int64_t smallest, std::int64_t largest) {
+  return {whole_number(smallest, largest).fault,
+          fmt::format("INT in [{} - {}]", smallest, largest)};
 }
 
-CLI::Option* add_packages(CLI::App& app,
-                          std::vector<std::pair<std::string, std::filesystem::path>>& packages) {
-  const auto fault = [](const std::string& text) {
+Check one_word_of(const std::vector<std::string>& words) {
+  return expecting(
+      one_of(words),
+      [words](const std::string& text) { return std::ranges::find(words, text) != words.end(); },
+      fmt::format("{{{}}}", fmt::join(words, ",")));
+}
+
+Check existing_file() {
+  return expecting(
+      "a file that exists",
+      [](const std::string& text) {
+        std::error_code missing;
+        return std::filesystem::exists(text, missing) &&
+               !std::filesystem::is_directory(text, missing);
+      },
+      "FILE");
+}
+
+Option packages_option(Packages& packages, std::vector<std::string> excludes) {
+  const auto is_complete = [](const std::string& text) {
     const std::size_t equals = text.find('=');
-    const bool is_complete = equals != std::string::npos && equals > 0 && equals + 1 < text.size();
-    return is_complete ? std::string() : unexpected(text, "NAME=DIRECTORY");
+    return equals != std::string::npos && equals > 0 && equals + 1 < text.size();
   };
-  const auto add = [&packages](const std::vector<std::string>& texts) {
-    for (const std::string& text : texts) {
-      const std::size_t equals = text.find('=');
-      packages.emplace_back(text.substr(0, equals), text.substr(equals + 1));
-    }
-  };
-  return app
-      .add_option_function<std::vector<std::string>>(
-          "--package", add, "NAME=DIRECTORY of a package:// that the URDF names; repeatable")
-      ->allow_extra_args(false)
-      ->check(fault);
+  return {"--package",
+          &packages,
+          "NAME=DIRECTORY of a package:// that the URDF names; repeatable",
+          expecting("NAME=DIRECTORY", is_complete),
+          {.excludes = std::move(excludes)}};
 }
 
-// One wording for all programs.
-void add_force(CLI::App& app, bool& force) {
-  app.add_flag("--force", force, "Overwrite files that exist");
-}
+Option force_option(bool& force) { return {"--force", &force, "Overwrite files that exist"}; }
 
 // spdlog's names of its levels.
-void add_log_level(CLI::App& app, std::string& level) {
-  app.add_option("--log-level", level, "trace, debug, info, warn, error or off")
-      ->check(CLI::IsMember({"trace", "debug", "info", "warn", "error", "off"}))
-      ->capture_default_str();
+Option log_level_option(std::string& level) {
+  return {"--log-level", &level, "trace, debug, info, warn, error or off",
+          one_word_of({"trace", "debug", "info", "warn", "error", "off"}), shown()};
 }
 
 }  // namespace clearance

@@ -2,33 +2,15 @@
 #include "monitor/app/program.hpp"
 
 #include <cstdio>
-#include <filesystem>
-#include <memory>
-#include <sstream>
 #include <string>
 #include <utility>
 #include <variant>
 #include <vector>
 
 #include "config/text/printable.hpp"
-#include "monitor/app/help_formatter.hpp"
 #include "monitor/app/print.hpp"
-#include "monitor/files/build_info.hpp"
 
 namespace clearance {
-namespace {
-
-// Prints CLI11's message through print().
-int say(const CLI::App& app, const CLI::Error& error) {
-  std::ostringstream out, err;
-  const int status = app.exit(error, out, err);
-  print(stdout, "{}", out.str());
-  print(stderr, "{}", err.str());
-  return status;
-}
-
-}  // namespace
-
 // StopSignal blocks the signals before anything else starts a thread.
 int run_program(const char* name, const std::function<int(StopSignal&)>& body,
                 const ExitCodeOf& exit_code_of) {
@@ -39,27 +21,6 @@ int run_program(const char* name, const std::function<int(StopSignal&)>& body,
     print(stderr, "{}: {}\n", name, printable(error.what()));
     return exit_code_of ? exit_code_of(error) : kFailed;
   }
-}
-
-// CLI11 has an exit code for each mistake; here all of them are kUsage.
-std::optional<int> parse(CLI::App& app, int argc, char** argv) {
-  app.set_version_flag("--version", std::string("clearance ") + kBuild);
-  app.name(std::filesystem::path(argv[0]).filename());
-  const auto formatter = std::make_shared<HelpFormatter>();
-  app.formatter(formatter);
-  for (CLI::App* subcommand : app.get_subcommands({})) subcommand->formatter(formatter);
-  try {
-    app.parse(argc, argv);
-  } catch (const CLI::RequiredError& error) {
-    // A mistyped option is often why something else is missing.
-    const std::vector<std::string> unknown = app.remaining(true);
-    if (!unknown.empty()) print(stderr, "{}\n", CLI::ExtrasError("", unknown).what());
-    say(app, error);
-    return kUsage;
-  } catch (const CLI::ParseError& error) {
-    return say(app, error) == 0 ? kOk : kUsage;
-  }
-  return std::nullopt;
 }
 
 CellOptions told_on_stderr() {

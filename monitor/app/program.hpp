@@ -1,7 +1,6 @@
-// The exit status, --version and the failure message, which all programs share.
+// The exit status and the failure message, which all programs share.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <exception>
 #include <functional>
 #include <optional>
@@ -30,10 +29,6 @@ using ExitCodeOf = std::function<ExitCode(const std::exception&)>;
 // a program are kept for `body` from the first moment on.
 [[nodiscard]] int run_program(const char* name, const std::function<int(StopSignal&)>& body,
                               const ExitCodeOf& exit_code_of = {});
-
-// Adds --version and parses. Returns an exit code when nothing remains to be done: --help,
-// --version or wrong usage.
-[[nodiscard]] std::optional<int> parse(CLI::App& app, int argc, char** argv);
 
 // Options that send progress messages about a cell to stderr.
 [[nodiscard]] CellOptions told_on_stderr();

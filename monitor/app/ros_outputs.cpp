@@ -1,34 +1,28 @@
 #include "monitor/app/ros_outputs.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <string_view>
+#include <utility>
 
-#include "config/text/sentences.hpp"
+#include "monitor/app/options.hpp"
 
 namespace clearance {
 namespace {
 
 constexpr std::string_view kAllOutputs = "all";
 
-std::string is_ros_output(const std::string& text) {
-  std::vector<std::string> keys = {std::string(kAllOutputs)};
-  for (const RosOutput& output : kRosOutputs) keys.emplace_back(output.key);
-  if (std::ranges::find(keys, text) != keys.end()) return {};
-  return fmt::format("found '{}'; expected {}", text, one_of(keys));
-}
-
 }  // namespace
 
-CLI::Option* add_ros_outputs(CLI::App& app, std::vector<std::string>& asked) {
-  return app
-      .add_option("--ros2", asked,
-                  "Write this ROS 2 output too, on its standard topic: markers, diagnostics, "
-                  "minimum_distance, speed_scaling, monitored_planning_scene, messages, or all; "
-                  "repeatable")
-      ->allow_extra_args(false)
-      ->check(is_ros_output);
+Option ros_outputs_option(std::vector<std::string>& asked, std::vector<std::string> excludes) {
+  std::vector<std::string> keys = {std::string(kAllOutputs)};
+  for (const RosOutput& output : kRosOutputs) keys.emplace_back(output.key);
+  return {"--ros2",
+          &asked,
+          "Write this ROS 2 output too, on its standard topic: markers, diagnostics, "
+          "minimum_distance, speed_scaling, monitored_planning_scene, messages, or all; "
+          "repeatable",
+          Check{one_word_of(keys).fault},
+          {.excludes = std::move(excludes)}};
 }
 
 void add_asked(const std::vector<std::string>& asked, RosOutputs& outputs) {

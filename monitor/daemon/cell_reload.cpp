@@ -4,7 +4,7 @@
 
 #include <utility>
 
-#include "monitor/app/log_lines.hpp"
+#include "monitor/app/log_line.hpp"
 
 namespace clearance {
 

@@ -1,5 +1,4 @@
 // clearanced: reads a cell, then publishes its distances at a fixed rate until it is told to stop.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cstdio>
 #include <cstdlib>
@@ -13,7 +12,7 @@
 #include "config/text/sentences.hpp"
 #include "monitor/app/cell_arguments.hpp"
 #include "monitor/app/log.hpp"
-#include "monitor/app/log_lines.hpp"
+#include "monitor/app/log_line.hpp"
 #include "monitor/app/options.hpp"
 #include "monitor/app/output_file.hpp"
 #include "monitor/app/print.hpp"
@@ -62,93 +61,88 @@ struct Arguments {
   std::vector<std::string> questions;  // likewise
   RosTrajectories trajectories{.topics = {}, .margins = {}};
   std::filesystem::path metrics;  // a socket; empty: none
+  std::int64_t ahead_us = 0;
   DaemonOptions daemon;
 };
 
-std::string is_client(const std::string& text) {
-  if (!text.empty() && text.size() <= kMaxSourceLength) return {};
-  return fmt::format("found '{}'; expected the name of a client with 1 to {} bytes", text,
-                     kMaxSourceLength);
+// A source of commands or questions.
+Check client_name() {
+  return expecting(
+      fmt::format("the name of a client with 1 to {} bytes", kMaxSourceLength),
+      [](const std::string& text) { return !text.empty() && text.size() <= kMaxSourceLength; });
 }
 
-std::string is_ros_topic(const std::string& text) {
-  const bool fits = text.size() > 1 && text.front() == '/' && text.back() != '/';
-  return fits ? "" : fmt::format("found '{}'; expected a topic like /arm/joint_trajectory", text);
+Check ros_topic() {
+  return expecting("a topic like /arm/joint_trajectory", [](const std::string& text) {
+    return text.size() > 1 && text.front() == '/' && text.back() != '/';
+  });
 }
 
-std::string is_partner(const std::string& text) {
-  if (is_partner_name(text)) return {};
-  return fmt::format("found '{}'; expected a name of 1 to {} printable characters without blanks",
-                     text, kMaxSourceLength);
+void add_inputs(CommandLine& line, Arguments& arguments) {
+  line.add({
+      {"--commands", &arguments.commands,
+       "Take commands of this client too, which change the scene (idl/COMMANDS.md); repeatable",
+       client_name()},
+      {"--questions", &arguments.questions,
+       "Answer questions of this client too, about motions before they are made "
+       "(idl/QUESTIONS.md); repeatable",
+       client_name(), excluding("--share")},
+      {"--ros2-trajectories", &arguments.trajectories.topics,
+       "Ask about each trajectory_msgs/JointTrajectory on this ROS 2 topic too, and answer on "
+       "/diagnostics and TOPIC/clearance (idl/ROS.md); repeatable",
+       ros_topic(), excluding("--share")},
+      {"--trajectory-margin", &arguments.trajectories.margins,
+       "Margin for these in place of the cell's, m; 0 asks for contact; repeatable",
+       number_from_zero()},
+      {"--keep-scene", &arguments.daemon.commander.keep_scene,
+       "Keep the changed scene in this file, and begin with it after a crash"},
+      {"--partner", &arguments.daemon.partner,
+       "Publish side by side with a second daemon of this cell, under this name "
+       "(monitor/loop/PARTNERS.md); in place of the cell's 'partner'",
+       expecting(
+           fmt::format("a name of 1 to {} printable characters without blanks", kMaxSourceLength),
+           is_partner_name)},
+      {"--reload", &arguments.daemon.reload,
+       "Read the cell again, as after SIGHUP, when its file or one that it names has changed"},
+  });
 }
 
-void add_options(CLI::App& app, Arguments& arguments) {
-  arguments.cell.add_to(app, true);
-  app.add_flag("--check", arguments.check, "Only check the cell: print every error, or a summary");
-  arguments.dds.add_to(app);
-  app.add_option("--record", arguments.daemon.record_file,
-                 "Record inputs and reports to this MCAP file; if it exists, to NAME-2.mcap and so "
-                 "on");
-  add_force(app, arguments.record_over);
-  arguments.recording.add_to(app, "--record-");
-  arguments.recording.add_events_to(app, "--record-");
-  auto* share = app.add_option(
-      "--share", arguments.cell.share,
-      "Watch only this share of a cell that names its shares; clearance-merge joins them");
-  app.add_flag("--gradients", arguments.gradients,
-               "Publish how the distances of published pairs change with joint positions, as "
-               "'gradients: true' in the cell does");
-  add_ros_outputs(app, arguments.ros)->excludes(share);
-  app.add_option("--commands", arguments.commands,
-                 "Take commands of this client too, which change the scene (idl/COMMANDS.md); "
-                 "repeatable")
-      ->allow_extra_args(false)
-      ->check(is_client);
-  app.add_option("--questions", arguments.questions,
-                 "Answer questions of this client too, about motions before they are made "
-                 "(idl/QUESTIONS.md); repeatable")
-      ->allow_extra_args(false)
-      ->check(is_client)
-      ->excludes(share);
-  app.add_option(
-         "--ros2-trajectories", arguments.trajectories.topics,
-         "Ask about each trajectory_msgs/JointTrajectory on this ROS 2 topic too, and answer on "
-         "/diagnostics and TOPIC/clearance (idl/ROS.md); repeatable")
-      ->allow_extra_args(false)
-      ->check(is_ros_topic)
-      ->excludes(share);
-  app.add_option("--trajectory-margin", arguments.trajectories.margins,
-                 "Margin for these in place of the cell's, m; 0 asks for contact; repeatable")
-      ->allow_extra_args(false)
-      ->check(number_from_zero());
-  app.add_option("--keep-scene", arguments.daemon.commander.keep_scene,
-                 "Keep the changed scene in this file, and begin with it after a crash");
-  app.add_option("--partner", arguments.daemon.partner,
-                 "Publish side by side with a second daemon of this cell, under this name "
-                 "(monitor/loop/PARTNERS.md); in place of the cell's 'partner'")
-      ->check(is_partner);
-  app.add_flag(
-      "--reload", arguments.daemon.reload,
-      "Read the cell again, as after SIGHUP, when its file or one that it names has changed");
-  app.add_option("--metrics", arguments.metrics,
-                 "Answer GET /metrics on this Unix socket, in the text format of Prometheus");
-  app.add_option("--ticks", arguments.daemon.max_ticks, "Stop after this many ticks; 0: never")
-      ->check(whole_number(0, 1'000'000'000'000));
-  CLI::Option* const priority =
-      app.add_option("--priority", arguments.daemon.fifo_priority,
-                     "Run the tick thread under SCHED_FIFO with this priority, and lock memory")
-          ->check(CLI::Range(1, 99));
-  app.add_option_function<std::int64_t>(
-         "--ahead", [&arguments](std::int64_t us) { arguments.daemon.ahead_ns = 1000 * us; },
-         "Wake this many us (1 to 500) before each tick and stay awake until it, and so does the "
-         "thread that publishes: reports come earlier, for the processor time "
-         "(monitor/loop/README.md)")
-      ->check(whole_number(1, 500))
-      ->needs(priority);
-  app.add_option("--cpu", arguments.daemon.cpu, "Pin the tick thread to this processor")
-      ->check(whole_number(0, 1023));
-  add_log_level(app, arguments.log_level);
-  app.footer(kFooter);
+void add_options(CommandLine& line, Arguments& arguments) {
+  DaemonOptions& daemon = arguments.daemon;
+  arguments.cell.add_to(line, true);
+  line.add({{"--check", &arguments.check, "Only check the cell: print every error, or a summary"}});
+  arguments.dds.add_to(line);
+  line.add({{"--record", &daemon.record_file,
+             "Record inputs and reports to this MCAP file; if it exists, to NAME-2.mcap and so "
+             "on"},
+            force_option(arguments.record_over)});
+  arguments.recording.add_to(line, "--record-");
+  arguments.recording.add_events_to(line, "--record-");
+  line.add({
+      {"--share", &arguments.cell.share,
+       "Watch only this share of a cell that names its shares; clearance-merge joins them"},
+      {"--gradients", &arguments.gradients,
+       "Publish how the distances of published pairs change with joint positions, as "
+       "'gradients: true' in the cell does"},
+      ros_outputs_option(arguments.ros, {"--share"}),
+  });
+  add_inputs(line, arguments);
+  line.add({
+      {"--metrics", &arguments.metrics,
+       "Answer GET /metrics on this Unix socket, in the text format of Prometheus"},
+      {"--ticks", &daemon.max_ticks, "Stop after this many ticks; 0: never",
+       whole_number(0, 1'000'000'000'000)},
+      {"--priority", &daemon.fifo_priority,
+       "Run the tick thread under SCHED_FIFO with this priority, and lock memory",
+       whole_number_in(1, 99)},
+      {"--ahead", &arguments.ahead_us,
+       "Wake this many us (1 to 500) before each tick and stay awake until it, and so does the "
+       "thread that publishes: reports come earlier, for the processor time "
+       "(monitor/loop/README.md)",
+       whole_number(1, 500), needing("--priority")},
+      {"--cpu", &daemon.cpu, "Pin the tick thread to this processor", whole_number(0, 1023)},
+      log_level_option(arguments.log_level),
+  });
 }
 
 // A run logs the same notes.
@@ -289,11 +283,13 @@ bool take_robot_description(Arguments& arguments, StopSignal& signal) {
 // All mistakes in the input are reported before the program joins DDS. The exception is a robot
 // description that has to come over DDS.
 int run(int argc, char** argv, StopSignal& signal) {
-  CLI::App app(
-      "Publishes how far apart the objects of a robot cell are, with bounds, at a fixed rate.");
+  CommandLine line{
+      "Publishes how far apart the objects of a robot cell are, with bounds, at a fixed rate.",
+      kFooter};
   Arguments arguments;
-  add_options(app, arguments);
-  if (const auto done = parse(app, argc, argv)) return *done;
+  add_options(line, arguments);
+  if (const auto done = parse(line, argc, argv)) return *done;
+  arguments.daemon.ahead_ns = 1000 * arguments.ahead_us;
   start_log("clearanced", arguments.log_level);
 
   if (arguments.check && arguments.cell.description_topic.empty()) {

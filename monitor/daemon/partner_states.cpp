@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "monitor/app/log_lines.hpp"
+#include "monitor/app/log_line.hpp"
 
 namespace clearance {
 namespace {

@@ -8,7 +8,7 @@
 #include <chrono>
 #include <span>
 
-#include "monitor/app/log_lines.hpp"
+#include "monitor/app/log_line.hpp"
 #include "monitor/files/build_info.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/publish/health.hpp"

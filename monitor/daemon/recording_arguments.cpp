@@ -1,14 +1,12 @@
 #include "monitor/daemon/recording_arguments.hpp"
 
-#include <fmt/format.h>
-
 #include <algorithm>
 #include <cmath>
 #include <ranges>
 #include <string>
+#include <utility>
 #include <vector>
 
-#include "config/text/sentences.hpp"
 #include "monitor/app/options.hpp"
 
 namespace clearance {
@@ -17,84 +15,72 @@ namespace {
 // The catalogue stays: no recording can be read without it.
 bool can_be_left_out(const Topic& topic) { return topic.kind != TopicKind::kCatalogue; }
 
-std::string is_topic(const std::string& text) {
+Check topic_of_recording() {
   std::vector<std::string> keys;
   for (const Topic& topic : kRecordedTopics | std::views::filter(can_be_left_out))
     keys.emplace_back(topic.key);
-  if (std::ranges::find(keys, text) != keys.end()) return {};
-  return fmt::format("found '{}'; expected {}", text, one_of(keys));
+  return {one_word_of(keys).fault};
 }
 
-constexpr const char* kRecording = "Recording";
-
-// An option with a number that may be 0.
-CLI::Option* add_amount(CLI::App& app, const std::string& name, double& amount,
-                        const std::string& help) {
-  return app.add_option(name, amount, help)
-      ->check(number_from_zero())
-      ->capture_default_str()
-      ->group(kRecording);
+OptionRule with_default(std::vector<std::string> needs = {},
+                        std::vector<std::string> excludes = {}) {
+  return {.shows_default = true,
+          .needs = std::move(needs),
+          .excludes = std::move(excludes),
+          .group = "Recording"};
 }
 
 }  // namespace
 
-void RecordingArguments::add_to(CLI::App& app, const std::string& prefix) {
-  app.add_option(prefix + "without", without,
-                 "Leave this topic out: poses, joint_states, distances, zones, health, separation "
-                 "or gradients; repeatable. "
-                 "Without poses and joint states nothing can be replayed")
-      ->check(is_topic)
-      ->allow_extra_args(false)
-      ->group(kRecording);
-  app.add_option(prefix + "every", pairs_every,
-                 "Keep every N-th report whole, and the others without their pairs: a replay still "
-                 "knows every tick")
-      ->check(whole_number(1, 1'000'000'000))
-      ->capture_default_str()
-      ->group(kRecording);
-  add_amount(app, prefix + "roll-mb", roll_mb,
-             "Continue in NAME-2.mcap and so on when a file has this size, MB; 0: never");
-  add_amount(app, prefix + "roll-s", roll_s, "The same when a file spans this time, s; 0: never");
-  add_amount(app, prefix + "attach-mb", attach_mb,
-             "Keep the files that the cell names (meshes, URDF, SRDF) if their compressed size "
-             "is at most this, MB; 0: never. With them a replay needs no cell");
-  app.add_flag(prefix + "uncompressed", uncompressed, "Do not compress (zstd)")->group(kRecording);
+void RecordingArguments::add_to(CommandLine& line, const std::string& prefix) {
+  line.add({
+      {prefix + "without",
+       &without,
+       "Leave this topic out: poses, joint_states, distances, zones, health, separation or "
+       "gradients; repeatable. Without poses and joint states nothing can be replayed",
+       topic_of_recording(),
+       {.group = "Recording"}},
+      {prefix + "every", &pairs_every,
+       "Keep every N-th report whole, and the others without their pairs: a replay still knows "
+       "every tick",
+       whole_number(1, 1'000'000'000), with_default()},
+      {prefix + "roll-mb", &roll_mb,
+       "Continue in NAME-2.mcap and so on when a file has this size, MB; 0: never",
+       number_from_zero(), with_default()},
+      {prefix + "roll-s", &roll_s, "The same when a file spans this time, s; 0: never",
+       number_from_zero(), with_default()},
+      {prefix + "attach-mb", &attach_mb,
+       "Keep the files that the cell names (meshes, URDF, SRDF) if their compressed size is at "
+       "most this, MB; 0: never. With them a replay needs no cell",
+       number_from_zero(), with_default()},
+      {prefix + "uncompressed", &uncompressed, "Do not compress (zstd)", {.group = "Recording"}},
+  });
 }
 
-void RecordingArguments::add_events_to(CLI::App& app, const std::string& prefix) {
-  CLI::Option* const around =
-      add_amount(app, prefix + "around", around_s,
-                 "Record by event: only from this time before to this time after a zone is "
-                 "entered, a fault or "
-                 "a command, s, in files NAME-TIME.mcap; 0: record all");
-  app.add_option(prefix + "ring-mb", ring_mb,
-                 "Memory for the time before an event, MB; it limits that time")
-      ->check(CLI::Range(1.0, 1e6))
-      ->capture_default_str()
-      ->needs(around)
-      ->group(kRecording);
-  add_amount(app, prefix + "keep-mb", keep_mb,
-             "Delete the oldest NAME-TIME.mcap while all of them have more than this, MB; 0: never")
-      ->needs(around);
-  add_amount(app, prefix + "keep-h", keep_h,
-             "Delete each NAME-TIME.mcap that is older than this, h; 0: never")
-      ->needs(around);
-  app.add_option(prefix + "ticks", ticks_every,
-                 "Keep one tick of N, with the newest poses and joints of each source, and every "
-                 "change of a zone: a small recording that shows a run, and cannot be compared")
-      ->check(whole_number(1, 1'000'000'000))
-      ->capture_default_str()
-      ->excludes(around)
-      ->group(kRecording);
-  app.add_option(prefix + "clouds", clouds_every,
-                 "Keep every N-th frame of each camera whole, and of the others only when a tick "
-                 "was shown them; 0: none. Only with all of them (1) a replay makes the same "
-                 "reports")
-      ->check(whole_number(0, 1'000'000'000))
-      ->capture_default_str()
-      ->group(kRecording);
-  for (const char* const name : {"roll-mb", "roll-s"})
-    around->excludes(app.get_option(prefix + name));
+void RecordingArguments::add_events_to(CommandLine& line, const std::string& prefix) {
+  const std::vector<std::string> around = {prefix + "around"};
+  line.add({
+      {around.front(), &around_s,
+       "Record by event: only from this time before to this time after a zone is entered, a fault "
+       "or a command, s, in files NAME-TIME.mcap; 0: record all",
+       number_from_zero(), with_default({}, {prefix + "roll-mb", prefix + "roll-s"})},
+      {prefix + "ring-mb", &ring_mb, "Memory for the time before an event, MB; it limits that time",
+       number_in(1.0, 1e6), with_default(around)},
+      {prefix + "keep-mb", &keep_mb,
+       "Delete the oldest NAME-TIME.mcap while all of them have more than this, MB; 0: never",
+       number_from_zero(), with_default(around)},
+      {prefix + "keep-h", &keep_h,
+       "Delete each NAME-TIME.mcap that is older than this, h; 0: never", number_from_zero(),
+       with_default(around)},
+      {prefix + "ticks", &ticks_every,
+       "Keep one tick of N, with the newest poses and joints of each source, and every change of a "
+       "zone: a small recording that shows a run, and cannot be compared",
+       whole_number(1, 1'000'000'000), with_default({}, around)},
+      {prefix + "clouds", &clouds_every,
+       "Keep every N-th frame of each camera whole, and of the others only when a tick was shown "
+       "them; 0: none. Only with all of them (1) a replay makes the same reports",
+       whole_number(0, 1'000'000'000), with_default()},
+  });
 }
 
 RecordingOptions RecordingArguments::options(bool overwrite) const {

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "config/cell/share_topics.hpp"
-#include "monitor/app/log_lines.hpp"
+#include "monitor/app/log_line.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/realtime.hpp"
 

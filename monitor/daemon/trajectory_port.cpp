@@ -5,7 +5,7 @@
 #include <utility>
 #include <variant>
 
-#include "monitor/app/log_lines.hpp"
+#include "monitor/app/log_line.hpp"
 #include "monitor/intake/ros_joint_trajectory.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/publish/motion_diagnostics.hpp"

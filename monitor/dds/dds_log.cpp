@@ -8,7 +8,7 @@
 #include <cstdint>
 #include <string_view>
 
-#include "monitor/app/log_lines.hpp"
+#include "monitor/app/log_line.hpp"
 
 namespace clearance {
 namespace {

@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "monitor/app/log_lines.hpp"
+#include "monitor/app/log_line.hpp"
 
 namespace clearance {
 namespace {

@@ -2,7 +2,7 @@
 
 #include <utility>
 
-#include "monitor/app/log_lines.hpp"
+#include "monitor/app/log_line.hpp"
 #include "monitor/participant/wire_values.hpp"
 
 namespace clearance {

@@ -4,7 +4,7 @@
 #include <cstring>
 #include <utility>
 
-#include "monitor/app/log_lines.hpp"
+#include "monitor/app/log_line.hpp"
 #include "monitor/files/build_info.hpp"
 #include "monitor/inputs/checksum.hpp"
 #include "monitor/loop/realtime.hpp"

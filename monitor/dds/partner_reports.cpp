@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "monitor/app/log_lines.hpp"
+#include "monitor/app/log_line.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/wire/report_checksum.hpp"
 

@@ -6,15 +6,13 @@
 #include <fmt/format.h>
 #include <fmt/ranges.h>
 
-#include <spdlog/spdlog.h>
-
 #include <algorithm>
 #include <array>
 #include <cstdlib>
 #include <utility>
 
 #include "config/text/sentences.hpp"
-#include "monitor/app/log_lines.hpp"
+#include "monitor/app/log_line.hpp"
 #include "monitor/dds/dds_log.hpp"
 #include "monitor/files/build_info.hpp"
 #include "monitor/loop/realtime.hpp"
@@ -251,11 +249,10 @@ bool PoseReader::hand_over(PoseBatch& batch) noexcept {
 void PoseReader::log_news() {
   for (const News& news : intake_.take_news()) {
     const std::string instead =
-        news.cause == News::Cause::kNoTransforms
+        news.code == lines::kNoTransforms.code
             ? fmt::format(" on {}; there is: {}", where_, ros_.present().listed())
             : "";
-    spdlog::log(news.is_warning ? spdlog::level::warn : spdlog::level::info, "{}{} [{}]", news.text,
-                instead, code(news.cause));
+    log_text(news.level, news.text + instead, news.code);
   }
 }
 

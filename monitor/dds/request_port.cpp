@@ -8,7 +8,7 @@
 
 #include "config/text/fnv1a.hpp"
 #include "config/text/sentences.hpp"
-#include "monitor/app/log_lines.hpp"
+#include "monitor/app/log_line.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/realtime.hpp"
 

@@ -8,7 +8,7 @@
 #include <stdexcept>
 
 #include "config/scene/revision.hpp"
-#include "monitor/app/log_lines.hpp"
+#include "monitor/app/log_line.hpp"
 #include "monitor/dds/present_topics.hpp"
 #include "monitor/wire/dds_sample.hpp"
 

@@ -1,14 +1,13 @@
 #include "monitor/dds/sensor_reader.hpp"
 
 #include <fmt/format.h>
-#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <new>
 #include <utility>
 
 #include "config/scene/scene_map.hpp"
-#include "monitor/app/log_lines.hpp"
+#include "monitor/app/log_line.hpp"
 #include "monitor/inputs/elapsed.hpp"
 #include "monitor/loop/realtime.hpp"
 
@@ -244,10 +243,7 @@ void SensorReader::tell_of_no_memory() {
 }
 
 void SensorReader::log_news() {
-  for (const News& news : intake_.take_news()) {
-    spdlog::log(news.is_warning ? spdlog::level::warn : spdlog::level::info, "{} [{}]", news.text,
-                code(news.cause));
-  }
+  for (const News& news : intake_.take_news()) log_text(news.level, news.text, news.code);
   tell_of_silence();
   tell_of_shells();
 }

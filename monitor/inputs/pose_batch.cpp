@@ -1,37 +1,25 @@
 #include "monitor/inputs/pose_batch.hpp"
 
+#include <iterator>
+
 namespace clearance {
 
 const char* name(Reject cause) noexcept {
-  switch (cause) {
-    case Reject::kUnknownObject:
-      return "unknown object";
-    case Reject::kNonFinite:
-      return "not finite";
-    case Reject::kNotUnit:
-      return "quaternion not of unit length";
-    case Reject::kBackwards:
-      return "time going backwards";
-    case Reject::kFuture:
-      return "stamp in the future";
-    case Reject::kWrongRevision:
-      return "made for another scene";
-    case Reject::kOtherSource:
-      return "another source sends it";
-    case Reject::kTooFast:
-      return "faster than it moves";
-    case Reject::kFrozen:
-      return "frozen, but with a twist";
-    case Reject::kOtherWay:
-      return "elsewhere than its twist leads";
-    case Reject::kDisputed:
-      return "another source contradicts it";
-    case Reject::kOutsideLimits:
-      return "outside its position limits";
-    case Reject::kCount:
-      break;
-  }
-  return "";
+  static constexpr const char* kInOrder[] = {"unknown object",
+                                             "not finite",
+                                             "quaternion not of unit length",
+                                             "time going backwards",
+                                             "stamp in the future",
+                                             "made for another scene",
+                                             "another source sends it",
+                                             "faster than it moves",
+                                             "frozen, but with a twist",
+                                             "elsewhere than its twist leads",
+                                             "another source contradicts it",
+                                             "outside its position limits",
+                                             ""};
+  static_assert(std::size(kInOrder) == kRejects + 1);
+  return kInOrder[static_cast<std::size_t>(cause)];
 }
 
 }  // namespace clearance

@@ -55,168 +55,86 @@ bool is_identity_or_zero(const double (&r)[9]) noexcept {
          std::all_of(std::begin(r), std::end(r), [](double x) { return x == 0.0; });
 }
 
+// In the order of FrameFault.
+struct FaultWords {
+  FrameFault fault;
+  const char* name;
+  const char* text;
+};
+constexpr auto kWords = [] {
+  using enum FrameFault;
+  return std::array<FaultWords, kFrameFaults>{{
+      {kNoFault, "", "nothing is wrong"},
+      {kUndecodable, "bytes that are no frame", "the bytes are not a message of this type"},
+      {kEncoding, "neither 16UC1 nor 32FC1", "the encoding is neither 16UC1 nor 32FC1"},
+      {kByteOrder, "another byte order",
+       "the byte order is not that of this machine, or not the one that it states"},
+      {kNoPixels, "no pixels", "the width or height is 0"},
+      {kTooManyPixels, "more pixels than the cell states",
+       "it has more pixels than the cell states"},
+      {kStep, "a step below a row", "the step is smaller than a row or a point"},
+      {kShortData, "half a frame", "it has fewer bytes than its size says"},
+      {kFields, "fields that are no points",
+       "x, y and z are not one float32 each within the point"},
+      {kLayout, "a layout that cannot be",
+       "numbers overlap, or the rows or angles are not those of its numbers"},
+      {kLongScan, "a scan longer than its stamp error",
+       "its rays were measured over more time than 'stamp_error_ms' states"},
+      {kIntrinsics, "no pinhole camera", "the intrinsics are not those of a pinhole camera"},
+      {kDistorted, "not rectified",
+       "it has a distortion, rotation, binning or region: use the rectified image"},
+      {kNoCameraInfo, "no CameraInfo yet", "no CameraInfo has come yet"},
+      {kCameraInfoChanged, "another CameraInfo than the first",
+       "the CameraInfo differs from the first one"},
+      {kSizeChanged, "another size than its CameraInfo", "its size is not that of the CameraInfo"},
+      {kOtherCamera, "a CameraInfo of another frame", "its frame_id is not that of the CameraInfo"},
+      {kNoStamp, "no stamp", "its stamp is 0"},
+      {kOtherClock, "a stamp of another clock", "its stamp is of another clock"},
+      {kOldStamp, "a stamp not newer than the last",
+       "its stamp is not newer than that of the frame before"},
+      {kFrozen, "frozen image",
+       "its depth is that of one of the last frames, but for less than one element in fifty"},
+      {kSecondPublisher, "a second publisher", "another publisher sends frames as well"},
+      {kTooOften, "more often than the cell states", "frames come more often than the cell states"},
+      {kFrameChanged, "another frame than the first",
+       "its frame_id is not that of the first message that was used"},
+      {kFormChanged, "another form than the first",
+       "its encoding, size or fields are not those of the first message that was used"},
+      {kNoPlace, "its place is not known", "the place of the sensor at its stamp is not known"},
+      {kLateTransforms, "late transforms", "transforms up to its stamp have not come in time"},
+      {kCannotBuild, "too wide, or too many points",
+       "its picture is too wide, or has more points within the range than the cell states"},
+      {kNothingSeen, "nothing seen but the robot",
+       "nothing is seen within the range but the robot itself: that is not clear"},
+      {kBeforeJoints, "before the first joints",
+       "joints were first heard after its stamp: the robot's own image is not left out"},
+      {kNotOrganised, "not organised", "it has no rows, so its points have no neighbours"},
+      {kOctree, "a map that cannot be read",
+       "its tree is cut, too deep, without a resolution, or neither OcTree nor ColorOcTree"},
+      {kWideRays, "rays too far apart",
+       "rays beside each other are more than 0.1 rad apart: of points, state 'spacing' as a "
+       "number"},
+      {kUnknownRays, "rays unknown",
+       "no two points in one row, or none in one column, show how far apart its rays are"},
+      {kFewSeen, "less seen than the cell states",
+       "a smaller share of it has depth within the range than 'least_seen' states"},
+      {kSeenFell, "far less seen than before",
+       "far less of it has depth within the range than of the frame before: it may be torn"},
+      {kRobotElsewhere, "tf has a robot elsewhere",
+       "tf has the base of a robot elsewhere than the cell, so the sensor may be misplaced"},
+  }};
+}();
+static_assert([] {
+  for (std::size_t i = 0; i < kWords.size(); ++i) {
+    if (static_cast<std::size_t>(kWords[i].fault) != i) return false;
+  }
+  return true;
+}());
+
 }  // namespace
 
-const char* text(FrameFault fault) noexcept {
-  switch (fault) {
-    case FrameFault::kNoFault:
-      return "nothing is wrong";
-    case FrameFault::kUndecodable:
-      return "the bytes are not a message of this type";
-    case FrameFault::kEncoding:
-      return "the encoding is neither 16UC1 nor 32FC1";
-    case FrameFault::kByteOrder:
-      return "the byte order is not that of this machine, or not the one that it states";
-    case FrameFault::kNoPixels:
-      return "the width or height is 0";
-    case FrameFault::kTooManyPixels:
-      return "it has more pixels than the cell states";
-    case FrameFault::kStep:
-      return "the step is smaller than a row or a point";
-    case FrameFault::kShortData:
-      return "it has fewer bytes than its size says";
-    case FrameFault::kFields:
-      return "x, y and z are not one float32 each within the point";
-    case FrameFault::kLayout:
-      return "numbers overlap, or the rows or angles are not those of its numbers";
-    case FrameFault::kIntrinsics:
-      return "the intrinsics are not those of a pinhole camera";
-    case FrameFault::kDistorted:
-      return "it has a distortion, rotation, binning or region: use the rectified image";
-    case FrameFault::kNoCameraInfo:
-      return "no CameraInfo has come yet";
-    case FrameFault::kCameraInfoChanged:
-      return "the CameraInfo differs from the first one";
-    case FrameFault::kSizeChanged:
-      return "its size is not that of the CameraInfo";
-    case FrameFault::kOtherCamera:
-      return "its frame_id is not that of the CameraInfo";
-    case FrameFault::kNoStamp:
-      return "its stamp is 0";
-    case FrameFault::kOtherClock:
-      return "its stamp is of another clock";
-    case FrameFault::kOldStamp:
-      return "its stamp is not newer than that of the frame before";
-    case FrameFault::kFrozen:
-      return "its depth is that of one of the last frames, but for less than one element in fifty";
-    case FrameFault::kSecondPublisher:
-      return "another publisher sends frames as well";
-    case FrameFault::kTooOften:
-      return "frames come more often than the cell states";
-    case FrameFault::kFrameChanged:
-      return "its frame_id is not that of the first message that was used";
-    case FrameFault::kFormChanged:
-      return "its encoding, size or fields are not those of the first message that was used";
-    case FrameFault::kNoPlace:
-      return "the place of the sensor at its stamp is not known";
-    case FrameFault::kLateTransforms:
-      return "transforms up to its stamp have not come in time";
-    case FrameFault::kCannotBuild:
-      return "its picture is too wide, or has more points within the range than the cell states";
-    case FrameFault::kNothingSeen:
-      return "nothing is seen within the range but the robot itself: that is not clear";
-    case FrameFault::kBeforeJoints:
-      return "joints were first heard after its stamp: the robot's own image is not left out";
-    case FrameFault::kNotOrganised:
-      return "it has no rows, so its points have no neighbours";
-    case FrameFault::kOctree:
-      return "its tree is cut, too deep, without a resolution, or neither OcTree nor ColorOcTree";
-    case FrameFault::kWideRays:
-      return "rays beside each other are more than 0.1 rad apart: of points, state 'spacing' as a "
-             "number";
-    case FrameFault::kUnknownRays:
-      return "no two points in one row, or none in one column, show how far apart its rays are";
-    case FrameFault::kLongScan:
-      return "its rays were measured over more time than 'stamp_error_ms' states";
-    case FrameFault::kFewSeen:
-      return "a smaller share of it has depth within the range than 'least_seen' states";
-    case FrameFault::kSeenFell:
-      return "far less of it has depth within the range than of the frame before: it may be torn";
-    case FrameFault::kRobotElsewhere:
-      return "tf has the base of a robot elsewhere than the cell, so the sensor may be misplaced";
-  }
-  return "";
-}
-
-const char* name(FrameFault fault) noexcept {
-  switch (fault) {
-    case FrameFault::kNoFault:
-      return "";
-    case FrameFault::kUndecodable:
-      return "bytes that are no frame";
-    case FrameFault::kEncoding:
-      return "neither 16UC1 nor 32FC1";
-    case FrameFault::kByteOrder:
-      return "another byte order";
-    case FrameFault::kNoPixels:
-      return "no pixels";
-    case FrameFault::kTooManyPixels:
-      return "more pixels than the cell states";
-    case FrameFault::kStep:
-      return "a step below a row";
-    case FrameFault::kShortData:
-      return "half a frame";
-    case FrameFault::kFields:
-      return "fields that are no points";
-    case FrameFault::kLayout:
-      return "a layout that cannot be";
-    case FrameFault::kIntrinsics:
-      return "no pinhole camera";
-    case FrameFault::kDistorted:
-      return "not rectified";
-    case FrameFault::kNoCameraInfo:
-      return "no CameraInfo yet";
-    case FrameFault::kCameraInfoChanged:
-      return "another CameraInfo than the first";
-    case FrameFault::kSizeChanged:
-      return "another size than its CameraInfo";
-    case FrameFault::kOtherCamera:
-      return "a CameraInfo of another frame";
-    case FrameFault::kNoStamp:
-      return "no stamp";
-    case FrameFault::kOtherClock:
-      return "a stamp of another clock";
-    case FrameFault::kOldStamp:
-      return "a stamp not newer than the last";
-    case FrameFault::kFrozen:
-      return "frozen image";
-    case FrameFault::kSecondPublisher:
-      return "a second publisher";
-    case FrameFault::kTooOften:
-      return "more often than the cell states";
-    case FrameFault::kFrameChanged:
-      return "another frame than the first";
-    case FrameFault::kFormChanged:
-      return "another form than the first";
-    case FrameFault::kNoPlace:
-      return "its place is not known";
-    case FrameFault::kLateTransforms:
-      return "late transforms";
-    case FrameFault::kCannotBuild:
-      return "too wide, or too many points";
-    case FrameFault::kNothingSeen:
-      return "nothing seen but the robot";
-    case FrameFault::kBeforeJoints:
-      return "before the first joints";
-    case FrameFault::kNotOrganised:
-      return "not organised";
-    case FrameFault::kOctree:
-      return "a map that cannot be read";
-    case FrameFault::kWideRays:
-      return "rays too far apart";
-    case FrameFault::kUnknownRays:
-      return "rays unknown";
-    case FrameFault::kLongScan:
-      return "a scan longer than its stamp error";
-    case FrameFault::kFewSeen:
-      return "less seen than the cell states";
-    case FrameFault::kSeenFell:
-      return "far less seen than before";
-    case FrameFault::kRobotElsewhere:
-      return "tf has a robot elsewhere";
-  }
-  return "";
-}
+const char* text(FrameFault fault) noexcept { return kWords[static_cast<std::size_t>(fault)].text; }
+const char* name(FrameFault fault) noexcept { return kWords[static_cast<std::size_t>(fault)].name; }
 
 FrameFault view(const sensor_msgs_msg_dds__Image_& message, std::size_t most_pixels,
                 DepthImage& out) noexcept {

@@ -123,10 +123,7 @@ void Intake::give(PoseBatch& batch, std::uint64_t writer, std::size_t cut) {
   const bool is_former =
       std::ranges::find(former_revisions_, batch.scene_revision) != former_revisions_.end();
   if (!is_ours && !is_former && !std::exchange(tally->warned_of_revision, true)) {
-    tell({.cause = News::Cause::kOtherRevision,
-          .text = fmt::format("source '{}' sends poses for scene revision {:016x}, this cell's is "
-                              "{:016x}: not used",
-                              tally->source.view(), batch.scene_revision, scene_->revision)});
+    tell(News(lines::kOtherRevision, tally->source.view(), batch.scene_revision, scene_->revision));
   }
   if (!use_(batch)) {
     ++tally->lost;
@@ -151,8 +148,22 @@ SourceTally* Intake::admit(PoseBatch& batch, std::uint64_t writer, std::size_t s
   return admission.tally;
 }
 
+std::string Intake::why_refused(const Admission& admission, const SourceName& source) const {
+  switch (admission.cause) {
+    case SourceRefusal::kNoName:
+      return fmt::format("they name no source; expected `source` to have 1 to {} bytes",
+                         kMaxSourceLength);
+    case SourceRefusal::kTooMany:
+      return fmt::format("source '{}' is one too many, since {} are heard", source.view(),
+                         kMaxSources);
+    case SourceRefusal::kOtherWriter:
+      break;
+  }
+  return fmt::format("source '{}' is writer {}", source.view(),
+                     options_.writer_name(admission.former_writer));
+}
+
 void Intake::tell_of(const Admission& admission, const PoseBatch& batch, std::uint64_t writer) {
-  using Cause = News::Cause;
   const SourceName& source = batch.source;
   const char* const inputs = batch.joints.empty() ? "poses" : "joints";
   switch (admission.news) {
@@ -161,32 +172,14 @@ void Intake::tell_of(const Admission& admission, const PoseBatch& batch, std::ui
     case Admission::News::kNewSource: {
       const std::string_view before = admission.place_of.view();
       const std::string place = before.empty() ? "" : fmt::format(", in the place of '{}'", before);
-      return tell({Cause::kNewSource, false,
-                   fmt::format("{} from source '{}'{}", inputs, source.view(), place)});
+      return tell(News(lines::kNewSource, inputs, source.view(), place));
     }
     case Admission::News::kTakenOver:
-      return tell({Cause::kSourceTakenOver, true,
-                   fmt::format("source '{}' is now writer {}; before, it was writer {}",
-                               source.view(), options_.writer_name(writer),
-                               options_.writer_name(admission.former_writer))});
+      return tell(News(lines::kSourceTakenOver, source.view(), options_.writer_name(writer),
+                       options_.writer_name(admission.former_writer)));
     case Admission::News::kFirstRefusal:
-      if (admission.cause == SourceRefusal::kNoName) {
-        return tell({Cause::kSourceRefused, true,
-                     fmt::format("writer {} sends {} without the name of a source: they are not "
-                                 "used; expected `source` to have 1 to {} bytes",
-                                 options_.writer_name(writer), inputs, kMaxSourceLength)});
-      }
-      if (admission.cause == SourceRefusal::kTooMany) {
-        return tell({Cause::kSourceRefused, true,
-                     fmt::format("source '{}' is one too many: {} sources are heard, its {} are "
-                                 "not used",
-                                 source.view(), kMaxSources, inputs)});
-      }
-      return tell({Cause::kSourceRefused, true,
-                   fmt::format("writer {} uses the name of source '{}', which is writer {}: its {} "
-                               "are not used as that source's",
-                               options_.writer_name(writer), source.view(),
-                               options_.writer_name(admission.former_writer), inputs)});
+      return tell(News(lines::kSourceRefused, inputs, options_.writer_name(writer),
+                       why_refused(admission, source)));
   }
 }
 

@@ -115,6 +115,7 @@ class Intake final : public Outlet {
   // Returns null if the batch is refused. The batch of a second writer of one name gets a source
   // name of its own: the tick compares what the two say.
   [[nodiscard]] SourceTally* admit(PoseBatch& batch, std::uint64_t writer, std::size_t size);
+  std::string why_refused(const Admission& admission, const SourceName& source) const;
   void tell_of(const Admission& admission, const PoseBatch& batch, std::uint64_t writer);
 
   const Scene* scene_;

@@ -34,12 +34,8 @@ std::optional<Decoder::Wanted> MoveItMessages::wants(const TopicName& topic) {
   for (std::uint32_t port = 0; port < kInputs.size(); ++port) {
     const Input& input = kInputs[port];
     if (topic.type != input.type || topic.name != inputs_->*input.topic) continue;
-    out_.tell({.cause = News::Cause::kTopicHeard,
-               .is_warning = !use_,
-               .text = use_ ? fmt::format("the scene of MoveIt on {}", topic.name)
-                            : fmt::format("messages of {} are not used: only a daemon or a replay "
-                                          "changes the scene",
-                                          topic.name)});
+    out_.tell(use_ ? News(lines::kTopicHeard, "the scene of MoveIt", topic.name)
+                   : News(lines::kTopicNotUsed, topic.name));
     if (!use_) return std::nullopt;
     return Wanted{port, input.delivery};
   }

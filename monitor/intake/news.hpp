@@ -1,41 +1,27 @@
-// News about the inputs for a person, each told once: a sentence, and its cause for programs.
+// News about the inputs for a person, each told once: a line of the log that is not written yet.
 #pragma once
 
-#include <cstdint>
 #include <string>
 #include <string_view>
+
+#include "monitor/interface/log_lines.hpp"
 
 namespace clearance {
 
 struct News {
-  enum class Cause : std::uint8_t {
-    kNewSource,
-    kSourceTakenOver,
-    kSourceRefused,
-    kOtherRevision,
-    kSlowInput,
-    kOtherClock,
-    kTopicHeard,
-    kTooManyTopics,
-    kNoPositions,
-    kUnknownJoints,
-    kFrameRefused,
-    kTooManyFrames,
-    kFrameOfTwo,
-    kFrameMoved,
-    kFrameMissing,
-    kNoTransforms,  // none at all; the caller adds to the sentence what there is instead
-    kFrameFound,
-  };
-  Cause cause;
-  bool is_warning = true;  // false: information only
+  template <class... Arguments>
+  explicit News(const LogLine<Arguments...>& line,
+                const std::type_identity_t<Arguments>&... arguments)
+      : code(line.code), level(line.level), text(worded(line, arguments...)) {}
+
+  std::string_view code;
+  LogLevel level;
   std::string text;
 };
 
 // "'arm'", or "(no name)" for an empty name.
-[[nodiscard]] std::string quoted(std::string_view name);
-
-// The code at the end of the daemon's log line, as of the lines in monitor/app/log_lines.hpp.
-[[nodiscard]] const char* code(News::Cause cause) noexcept;
+[[nodiscard]] inline std::string quoted(std::string_view name) {
+  return name.empty() ? "(no name)" : fmt::format("'{}'", name);
+}
 
 }  // namespace clearance

@@ -71,10 +71,7 @@ void OwnJointStates::note_unknown() {
     added += (added.empty() ? "" : ", ") + std::string(name);
   }
   if (added.empty()) return;
-  out_.tell({.cause = News::Cause::kUnknownJoints,
-             .is_warning = true,
-             .text = fmt::format("joints from '{}' that the cell does not have are refused: {}",
-                                 batch_.source.view(), added)});
+  out_.tell(News(lines::kUnknownJoints, batch_.source.view(), added));
 }
 
 PoseBatch* OwnBatches::decode(TopicKind kind, std::span<const std::byte> cdr) {

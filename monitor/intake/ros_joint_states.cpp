@@ -48,16 +48,12 @@ std::optional<Decoder::Wanted> RosJointStates::wants(const TopicName& topic) {
   if (known != topics_.end()) return Wanted{port, &kRosJointState};
   if (topics_.size() == kMostTopics) {
     if (!std::exchange(too_many_said_, true)) {
-      out_.tell({.cause = News::Cause::kTooManyTopics,
-                 .text = fmt::format("{} is one topic of joint states too many: {} are heard",
-                                     topic.name, kMostTopics)});
+      out_.tell(News(lines::kTooManyTopics, topic.name, kMostTopics));
     }
     return std::nullopt;
   }
   topics_.push_back({topic.name, JointNames(*scene_, topic.name), {}});
-  out_.tell({.cause = News::Cause::kTopicHeard,
-             .is_warning = false,
-             .text = fmt::format("joint states of ROS 2 on {}", ros_dds_name(topic.name))});
+  out_.tell(News(lines::kTopicHeard, "joint states of ROS 2", ros_dds_name(topic.name)));
   return Wanted{port, &kRosJointState};
 }
 
@@ -104,10 +100,7 @@ std::int64_t RosJointStates::time_of(const RawMessage& message, const Topic& top
 void RosJointStates::note_unused(const Topic& topic, Writer& writer) {
   if (states_->position._length == 0 && states_->name._length > 0 &&
       !std::exchange(writer.no_positions_said, true)) {
-    out_.tell({.cause = News::Cause::kNoPositions,
-               .is_warning = false,
-               .text = fmt::format("joint states from '{}' without positions are not used",
-                                   writer.source.view())});
+    out_.tell(News(lines::kNoPositions, writer.source.view()));
   }
   std::string added;
   for (std::uint32_t i = 0; i < states_->name._length; ++i) {
@@ -118,11 +111,7 @@ void RosJointStates::note_unused(const Topic& topic, Writer& writer) {
       added += (added.empty() ? "" : ", ") + (*name == '\0' ? quoted(name) : std::string(name));
   }
   if (added.empty()) return;
-  out_.tell(
-      {.cause = News::Cause::kUnknownJoints,
-       .is_warning = false,
-       .text = fmt::format("joints from '{}' that no robot of this cell has there are not used: {}",
-                           writer.source.view(), added)});
+  out_.tell(News(lines::kUnknownRosJoints, writer.source.view(), added));
 }
 
 bool RosJointStates::decode(std::uint32_t port, const RawMessage& message, const Now&,

@@ -142,11 +142,7 @@ void RosTransforms::take(const Transform& transform, std::uint32_t port, const R
       !rivals_said_.insert(child).second) {
     return;
   }
-  out_.tell({.cause = News::Cause::kFrameOfTwo,
-             .text = fmt::format("frame '{}' is sent by several publishers that contradict each "
-                                 "other: what follows it is unknown while they do, unless "
-                                 "'source' in the cell tells them apart",
-                                 child)});
+  out_.tell(News(lines::kFrameOfTwo, child));
 }
 
 // A refused transform does not change its frame, which therefore becomes late.
@@ -156,17 +152,13 @@ bool RosTransforms::is_usable(const std::string& child, const TfTree::Link& link
     if (refused_said_.size() < TfFrames::kMostFrames && refused_said_.insert(child).second) {
       const char* const why = has_names ? "no pose (not finite, or a quaternion not of unit length)"
                                         : "a frame without a name, or its own parent";
-      out_.tell({.cause = News::Cause::kFrameRefused,
-                 .text = fmt::format("transforms of frame '{}' to '{}' are not used: {}", child,
-                                     link.parent, why)});
+      out_.tell(News(lines::kFrameRefused, child, link.parent, why));
     }
     return false;
   }
   if (!claims_.is_one_too_many(child)) return true;
   if (!std::exchange(too_many_said_, true)) {
-    out_.tell({.cause = News::Cause::kTooManyFrames,
-               .text = fmt::format("frame '{}' is one too many: {} frames are heard", child,
-                                   TfFrames::kMostFrames)});
+    out_.tell(News(lines::kTooManyFrames, child, TfFrames::kMostFrames));
   }
   return false;
 }
@@ -176,10 +168,8 @@ void RosTransforms::note_parent(const std::string& child, const std::string& par
   if (known == nullptr || known->parent == parent) return;
   if (++parents_said_[child] > kMostParentsSaid) return;
   const bool is_last = parents_said_[child] == kMostParentsSaid;
-  out_.tell({.cause = News::Cause::kFrameMoved,
-             .is_warning = false,
-             .text = fmt::format("frame '{}' hangs on '{}' now, before on '{}'{}", child, parent,
-                                 known->parent, is_last ? "; further changes are not named" : "")});
+  out_.tell(News(lines::kFrameMoved, child, parent, known->parent,
+                 is_last ? "; further changes are not named" : ""));
 }
 
 void RosTransforms::settle(const Now& now) {
@@ -267,17 +257,14 @@ void RosTransforms::note(std::size_t follower, State state, const Now& now) {
   }
   if (state == State::kFine) {
     if (!std::exchange(following.is_lost, false)) return;
-    out_.tell({.cause = News::Cause::kFrameFound,
-               .is_warning = false,
-               .text = fmt::format("frame '{}', which {} follows, is there", of.frame, of.name)});
+    out_.tell(News(lines::kFrameFound, of.frame, of.name));
     return;
   }
   if (following.said || now.monotonic_ns - following.since_ns < kMissingNs) return;
   following.said = following.is_lost = true;
   const bool none = state == State::kMissing && claims_.tree().links().empty();
-  out_.tell({.cause = none ? News::Cause::kNoTransforms : News::Cause::kFrameMissing,
-             .text = fmt::format("{} is not known: it follows the frame '{}', {}", of.name,
-                                 of.frame, what_is_wrong(of, state))});
+  out_.tell(News(none ? lines::kNoTransforms : lines::kFrameMissing, of.name, of.frame,
+                 what_is_wrong(of, state)));
 }
 
 std::string RosTransforms::what_is_wrong(const TrackedFrames::Follower& follower,

@@ -42,9 +42,7 @@ std::optional<Decoder::Wanted> SensorMessages::wants(const TopicName& topic, Sen
   const std::size_t before = topics_.size();
   const std::uint32_t port = port_of({type, topic.name});
   if (port == before) {
-    out_.tell({.cause = News::Cause::kTopicHeard,
-               .is_warning = false,
-               .text = fmt::format("sensor '{}' on {}", sensor->name, topic.name)});
+    out_.tell(News(lines::kTopicHeard, fmt::format("sensor '{}'", sensor->name), topic.name));
   }
   return Wanted{port, &delivery};
 }

@@ -61,13 +61,9 @@ void SlowInputs::note_poses(const PoseBatch& batch, Outlet& out) {
     const auto interval_ns = poses_.note(sample.object, sample.stamp_ns);
     if (!interval_ns) continue;
     const Object& object = scene_->objects[sample.object];
-    out.tell(
-        {.cause = News::Cause::kSlowInput,
-         .text = fmt::format("poses of {} come every {} ms, its age limit is {} ms: it is late "
-                             "again and again, and its zones flicker; age_limit_ms of {} "
-                             "would fit",
-                             object.name, *interval_ns / 1'000'000, object.age_limit_ns / 1'000'000,
-                             fitting_age_limit_ms(*interval_ns))});
+    out.tell(News(lines::kSlowInput, fmt::format("poses of {}", object.name),
+                  *interval_ns / 1'000'000, object.name, object.age_limit_ns / 1'000'000,
+                  fitting_age_limit_ms(*interval_ns)));
   }
 }
 
@@ -84,14 +80,9 @@ void SlowInputs::note_joints(const PoseBatch& batch, Outlet& out) {
   }
   if (found == 0) return;
   const std::string more = found > 1 ? fmt::format(" and {} more joints", found - 1) : "";
-  out.tell(
-      {.cause = News::Cause::kSlowInput,
-       .text = fmt::format("joint states from '{}' come at {:.1f} Hz, every {} ms: the age "
-                           "limit of {}{} is {} ms: they are late again and again, and zones "
-                           "flicker; age_limit_ms of {} would fit",
-                           batch.source.view(), 1e9 / static_cast<double>(interval_ns),
-                           interval_ns / 1'000'000, first->name, more,
-                           first->age_limit_ns / 1'000'000, fitting_age_limit_ms(interval_ns))});
+  out.tell(News(lines::kSlowInput, fmt::format("joint states from '{}'", batch.source.view()),
+                interval_ns / 1'000'000, first->name + more, first->age_limit_ns / 1'000'000,
+                fitting_age_limit_ms(interval_ns)));
 }
 
 std::int64_t fitting_age_limit_ms(std::int64_t interval_ns) noexcept {

@@ -37,12 +37,8 @@ std::int64_t StampCheck::time_of(std::int64_t stamp_ns, std::int64_t sent_ns, Ro
   if (other_clock_ >= 0 && ++other_clock_ == kOtherClockMessages) {
     other_clock_ = -1;
     const Whose said = whose();
-    out.tell(
-        {.cause = News::Cause::kOtherClock,
-         .text = fmt::format("{} are stamped {:+.3f} s off the time at which they are sent: by "
-                             "a clock of their own, as of a simulation (use_sim_time); {} "
-                             "would take the time at which they are sent",
-                             said.messages, 1e-9 * static_cast<double>(difference_ns), said.key)});
+    out.tell(News(lines::kOtherClock, said.messages, 1e-9 * static_cast<double>(difference_ns),
+                  said.key));
   }
   return time_ns;
 }

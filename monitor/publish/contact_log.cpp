@@ -4,7 +4,7 @@
 #include <string>
 #include <utility>
 
-#include "monitor/app/log_lines.hpp"
+#include "monitor/app/log_line.hpp"
 #include "monitor/interface/contact_text.hpp"
 #include "monitor/interface/pair_name.hpp"
 

@@ -7,7 +7,7 @@
 #include <utility>
 
 #include "config/text/sentences.hpp"
-#include "monitor/app/log_lines.hpp"
+#include "monitor/app/log_line.hpp"
 
 namespace clearance {
 namespace {

@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "config/text/sentences.hpp"
-#include "monitor/app/log_lines.hpp"
+#include "monitor/app/log_line.hpp"
 #include "monitor/publish/joint_log.hpp"
 
 namespace clearance {

@@ -4,7 +4,7 @@
 #include <cmath>
 #include <utility>
 
-#include "monitor/app/log_lines.hpp"
+#include "monitor/app/log_line.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/visual/cell_markers.hpp"
 #include "monitor/wire/convert.hpp"

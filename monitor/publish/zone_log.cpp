@@ -2,7 +2,7 @@
 
 #include <string>
 
-#include "monitor/app/log_lines.hpp"
+#include "monitor/app/log_line.hpp"
 #include "monitor/interface/pair_name.hpp"
 #include "monitor/interface/zone_cause.hpp"
 

@@ -97,8 +97,9 @@ void BagLog::take(const BagMessage& message) {
   intake_.take({.topic = *topic.number, .cdr = message.payload, .sent_ns = message.log_ns},
                {.realtime_ns = message.log_ns, .monotonic_ns = message.log_ns});
   for (News& news : intake_.take_news()) {
-    const bool is_unused = news.cause == News::Cause::kTopicHeard && news.is_warning;
-    if (is_unused || news.cause == News::Cause::kSlowInput) told_.push_back(std::move(news.text));
+    const bool is_unused =
+        news.code == lines::kTopicNotUsed.code && news.level == lines::kTopicNotUsed.level;
+    if (is_unused || news.code == lines::kSlowInput.code) told_.push_back(std::move(news.text));
   }
 }
 

@@ -42,8 +42,8 @@ class ChildProcess {
   // The output written so far.
   [[nodiscard]] std::string output() const;
   [[nodiscard]] bool wrote(const std::string& text) const;
-  // Returns true if the program has logged a line with this code (monitor/app/log_lines.hpp) that
-  // contains all of these names.
+  // Returns true if the program has logged a line with this code (monitor/interface/log_lines.hpp)
+  // that contains all of these names.
   [[nodiscard]] bool told(const std::string& code,
                           const std::vector<std::string>& names = {}) const;
 

@@ -6,6 +6,7 @@
 #include <csignal>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <sstream>
 #include <string>
 #include <vector>
@@ -26,14 +27,17 @@ inline std::string pictures() {
   return folder.string();
 }
 
-// Waits until the daemon has poses of both boxes.
-inline void wait_for_poses(const DdsOptions& dds, const Cell& cell) {
+// Waits until the daemon has poses of all objects, and has then reported for these seconds.
+inline void wait_for_poses(const DdsOptions& dds, const Cell& cell, double seconds = 0.0) {
   Participant client(dds);
   Distances reports(client, cell);
+  std::optional<std::int64_t> known_ns;
   for (;;) {
     const auto report = reports.next();
     ASSERT_NE(report, nullptr);
-    if ((*report)->minimum_known && (*report)->unknown == 0) return;
+    const std::int64_t now_ns = (*report)->now_ns;
+    if (!known_ns && (*report)->minimum_known && (*report)->unknown == 0) known_ns = now_ns;
+    if (known_ns && 1e-9 * static_cast<double>(now_ns - *known_ns) >= seconds) return;
   }
 }
 
@@ -49,6 +53,29 @@ struct RunningSmallCell {
   std::vector<std::string> arguments() {
     wait_for_poses(own, cell.cell());
     return with({cell.path()}, dds);
+  }
+};
+
+// A script of view_js.
+class Script : public ChildProcess {
+ public:
+  Script(const std::string& name, const std::vector<std::string>& arguments,
+         const ChildOptions& options = {})
+      : ChildProcess("/usr/bin/env", with({"node", kScripts + "/" + name + ".mjs"}, arguments),
+                     options) {}
+};
+
+// A script that opens a page. All of a process have one Chromium, which takes a second to start.
+class PageScript : public Script {
+ public:
+  PageScript(const std::string& name, const std::vector<std::string>& arguments)
+      : Script(name, arguments, {.environment = {{"CLEARANCE_BROWSER", browser()}}}) {}
+
+ private:
+  static std::string browser() {
+    static const Script chromium("browser", {});
+    EXPECT_TRUE(eventually([] { return chromium.wrote("\n"); })) << chromium.output();
+    return chromium.output().substr(0, chromium.output().find('\n'));
   }
 };
 

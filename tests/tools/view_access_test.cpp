@@ -35,9 +35,9 @@ struct LonelyView {
 
 // The answers to these cases of access.mjs.
 std::vector<json> answers(const View& view, const std::vector<json>& cases) {
-  std::vector<std::string> arguments = {"node", kScripts + "/access.mjs", view.page()};
+  std::vector<std::string> arguments = {view.page()};
   for (const json& each : cases) arguments.push_back(each.dump());
-  ChildProcess script("/usr/bin/env", arguments);
+  Script script("access", arguments);
   EXPECT_EQ(script.wait(), 0) << script.output();
   std::vector<json> found = lines_of(script);
   EXPECT_EQ(found.size(), cases.size()) << script.output();
@@ -115,7 +115,7 @@ TEST(ViewAccess, InABrowserOnlyItsOwnPageGetsTheCell) {
   const LonelyView lonely;
   const std::string page = lonely.view.page();
   const std::string port = page.substr(page.rfind(':') + 1, page.rfind('/') - page.rfind(':') - 1);
-  ChildProcess script("/usr/bin/env", {"node", kScripts + "/foreign_page.mjs", port});
+  PageScript script("foreign_page", {port});
   EXPECT_EQ(script.wait(std::chrono::seconds(200)), 0) << script.output();
   ASSERT_EQ(lines_of(script).size(), 1u) << script.output();
   const json all = {{"opens", true}, {"reads", true}}, none = {{"opens", false}, {"reads", false}};

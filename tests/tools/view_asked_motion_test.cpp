@@ -40,7 +40,7 @@ TEST(ViewOfAnAskedMotion, DrawsThePathAndTheFirstViolation) {
   Participant participant(dds);
   RosJoints joints(participant);
   ASSERT_TRUE(joints.is_heard()) << daemon.output();
-  ChildProcess page("/usr/bin/env", {"node", kScripts + "/asked.mjs", view.page()});
+  PageScript page("asked", {view.page()});
   const auto send = [&] {
     joints.send({"shoulder", "elbow", "push"}, {-1.0, 0.0, 0.0}, {0.0, 0.0, 0.0});
   };

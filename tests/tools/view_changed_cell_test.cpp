@@ -55,7 +55,7 @@ TEST(ViewOfAChangedCell, ShowsTheCellInForceLiveAndAtEveryMomentOfItsRecording) 
   const ChildProcess robot(kRobot, with({cell.path(), "--rate", "200"}, dds));
   wait_for_poses(own, first);
   const View view(with({cell.path()}, dds));
-  ChildProcess page("/usr/bin/env", {"node", kScripts + "/changed_cell.mjs", view.page(), "wall"});
+  PageScript page("changed_cell", {view.page(), "wall"});
   ASSERT_TRUE(eventually([&] { return page.wrote("ready"); })) << page.output();
   std::string changed = text;
   const std::string floor = "  - {name: floor,";
@@ -89,8 +89,7 @@ TEST(ViewOfAChangedCell, ShowsTheCellInForceLiveAndAtEveryMomentOfItsRecording) 
 
   std::ofstream(cell.path()) << text;
   const View replay({cell.path(), "--replay", file});
-  ChildProcess film("/usr/bin/env", {"node", kScripts + "/changed_cell.mjs", replay.page(), "wall",
-                                     "0.1", "9999", "0.2"});
+  PageScript film("changed_cell", {replay.page(), "wall", "0.1", "9999", "0.2"});
   EXPECT_EQ(film.wait(std::chrono::seconds(100)), 0) << film.output();
   const std::vector<json> shown = lines_of(film);
   ASSERT_EQ(shown.size(), 3u) << film.output();

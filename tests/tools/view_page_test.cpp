@@ -60,8 +60,7 @@ class ViewPage : public testing::Test {
     const ChildProcess daemon(kDaemon, with({cell.path()}, dds));
     const ChildProcess robot(kRobot, with({cell.path(), "--rate", "50"}, dds));
     const View view(with({cell.path()}, dds));
-    ChildProcess page("/usr/bin/env",
-                      with({"node", kScripts + "/view_page.mjs", view.page()}, steps));
+    PageScript page("view_page", with({view.page()}, steps));
     EXPECT_EQ(page.wait(std::chrono::seconds(280)), 0) << page.output();
     std::map<std::string, json> found;
     for (const json& line : lines_of(page)) {
@@ -205,7 +204,7 @@ class ViewOfACamera : public testing::Test {
   }
   // Returns what a page shows of the sensors.
   static json seen_at(const std::string& address) {
-    ChildProcess page("/usr/bin/env", {"node", kScripts + "/view_page.mjs", address, "seen"});
+    PageScript page("view_page", {address, "seen"});
     EXPECT_EQ(page.wait(std::chrono::seconds(280)), 0) << page.output();
     std::map<std::string, json> found;
     for (const json& line : lines_of(page)) {
@@ -262,8 +261,7 @@ TEST_F(ViewOfACamera, DrawsTheSameOfARecording) {
   {
     ChildProcess daemon(kDaemon, daemon_arguments({"--record", file}));
     const ChildProcess simulated = robot();
-    wait_for_poses(own, std::get<Cell>(read_cell(cell)));
-    std::this_thread::sleep_for(std::chrono::milliseconds(2500));
+    wait_for_poses(own, std::get<Cell>(read_cell(cell)), 2.2);
     daemon.signal(SIGTERM);
     EXPECT_EQ(daemon.wait(), 0) << daemon.output();
   }
@@ -291,8 +289,7 @@ TEST(ViewOfAUrdf, NeedsNoCellFileAndSpeaksOfJointStates) {
   const auto dds = dds_arguments(own_dds());
   const ChildProcess daemon(kDaemon, with(robot, dds));
   const View view(with(robot, dds));
-  ChildProcess page("/usr/bin/env",
-                    {"node", kScripts + "/view_page.mjs", view.page(), "inputs", "causes"});
+  PageScript page("view_page", {view.page(), "inputs", "causes"});
   EXPECT_EQ(page.wait(std::chrono::seconds(280)), 0) << page.output();
   const std::vector<json> said = lines_of(page);
   ASSERT_FALSE(said.empty()) << page.output();
@@ -325,7 +322,7 @@ TEST(ViewOfAUrdf, ShowsVisualMeshesWhereTheUrdfHasThem) {
   const ChildProcess daemon(kDaemon, with(robot, dds));
   const ChildProcess joints(kRobot, with(with(robot, {"--rate", "50"}), dds));
   const View view(with(robot, dds));
-  ChildProcess page("/usr/bin/env", {"node", kScripts + "/view_page.mjs", view.page(), "visuals"});
+  PageScript page("view_page", {view.page(), "visuals"});
   EXPECT_EQ(page.wait(std::chrono::seconds(280)), 0) << page.output();
   const std::vector<json> said = lines_of(page);
   ASSERT_FALSE(said.empty()) << page.output();

@@ -24,8 +24,7 @@ using testing::Not;
 
 // Returns what Foxglove's client has met at this address once it has these reports.
 nlohmann::json shown_at(const std::string& socket, int reports) {
-  ChildProcess client("/usr/bin/env", {"node", kScripts + "/foxglove.mjs", socket, "reports",
-                                       std::to_string(reports)});
+  Script client("foxglove", {socket, "reports", std::to_string(reports)});
   EXPECT_EQ(client.wait(), 0) << client.output();
   const auto lines = lines_of(client);
   EXPECT_EQ(lines.size(), 1u) << client.output();

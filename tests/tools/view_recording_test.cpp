@@ -20,15 +20,24 @@ using nlohmann::json;
 
 class ViewOfARecording : public testing::Test {
  protected:
-  ViewOfARecording() {
-    const DdsOptions own = own_dds();
-    const auto dds = dds_arguments(own);
-    ChildProcess daemon(kDaemon, with({cell.path(), "--record", file}, dds));
-    ChildProcess robot(kRobot, with({cell.path(), "--rate", "200"}, dds));
-    wait_for_poses(own, cell.cell());
-    std::this_thread::sleep_for(std::chrono::milliseconds(1200));
-    daemon.signal(SIGTERM);
-    EXPECT_EQ(daemon.wait(), 0) << daemon.output();
+  // Made once, since these tests only read it.
+  struct Recorded {
+    Recorded() {
+      const DdsOptions own = own_dds();
+      const auto dds = dds_arguments(own);
+      ChildProcess daemon(kDaemon, with({cell.path(), "--record", file}, dds));
+      ChildProcess robot(kRobot, with({cell.path(), "--rate", "200"}, dds));
+      wait_for_poses(own, cell.cell(), 1.2);
+      daemon.signal(SIGTERM);
+      EXPECT_EQ(daemon.wait(), 0) << daemon.output();
+    }
+    CellFile cell{small_cell("small")};
+    ScratchFolder folder;
+    std::string file = (folder / "run.mcap").string();
+  };
+  static const Recorded& recorded() {
+    static const Recorded once;
+    return once;
   }
 
   // The entry with the least distance that is not stale.
@@ -48,15 +57,13 @@ class ViewOfARecording : public testing::Test {
     return least;
   }
 
-  CellFile cell{small_cell("small")};
-  ScratchFolder folder;
-  std::string file = (folder / "run.mcap").string();
+  const CellFile& cell = recorded().cell;
+  const std::string& file = recorded().file;
 };
 
 TEST_F(ViewOfARecording, FindsTheWorstMomentAndGoesWhereItIsDragged) {
   View view({cell.path(), "--replay", file});
-  ChildProcess page("/usr/bin/env",
-                    {"node", kScripts + "/page.mjs", view.page(), pictures(), "recording"});
+  PageScript page("page", {view.page(), pictures(), "recording"});
   EXPECT_EQ(page.wait(std::chrono::seconds(200)), 0) << page.output();
   const std::vector<json> said = lines_of(page);
   ASSERT_EQ(said.size(), 2u) << page.output();
@@ -78,8 +85,7 @@ TEST_F(ViewOfARecording, SaysTheSameOfReportsThatItComputesItself) {
   json found[2];
   for (int i = 0; i < 2; ++i) {
     const View& view = i == 0 ? recorded : computed;
-    ChildProcess client("/usr/bin/env",
-                        {"node", kScripts + "/foxglove.mjs", view.socket(), "time", "1"});
+    Script client("foxglove", {view.socket(), "time", "1"});
     EXPECT_EQ(client.wait(), 0) << client.output();
     const std::vector<json> said = lines_of(client);
     ASSERT_EQ(said.size(), 1u) << client.output();
@@ -145,8 +151,7 @@ double least_in(const json& curve) { return std::ranges::min(known_in(curve)); }
 // of that time.
 TEST_F(ViewOfARecording, AJumpBringsTheZonesAndTheHistoryOfItsMoment) {
   View view({cell.path(), "--replay", file});
-  ChildProcess client("/usr/bin/env", {"node", kScripts + "/jump.mjs", view.socket(), "1.1024",
-                                       "0.3021", "0.9023", "0.5022"});
+  Script client("jump", {view.socket(), "1.1024", "0.3021", "0.9023", "0.5022"});
   EXPECT_EQ(client.wait(), 0) << client.output();
   const std::vector<json> said = lines_of(client);
   ASSERT_EQ(said.size(), 4u) << client.output();

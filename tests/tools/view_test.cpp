@@ -33,8 +33,7 @@ TEST(View, ShowsInABrowserWhatTheTopicSaysAndThatTheDaemonHasEnded) {
   ChildProcess robot(kRobot, with({kTwoArms, "--rate", "250"}, arguments));
   View view(with({kTwoArms}, arguments));
   Distances reports(client, cell);
-  ChildProcess page("/usr/bin/env",
-                    {"node", kScripts + "/page.mjs", view.page(), pictures(), "live"});
+  PageScript page("page", {view.page(), pictures(), "live"});
   std::map<std::uint64_t, double> distances;  // by cycle
   const auto hear = [&] {
     const auto report = reports.next();
@@ -79,8 +78,7 @@ TEST(View, ShowsHowMuchIsLeftBetweenAPersonAndARobot) {
   ChildProcess robot(kRobot, with({cell.path(), "--rate", "200"}, dds));
   View view(with({cell.path()}, dds));
   std::filesystem::remove(pictures() + "/separation.png");
-  ChildProcess page("/usr/bin/env",
-                    {"node", kScripts + "/page.mjs", view.page(), pictures(), "separation"});
+  PageScript page("page", {view.page(), pictures(), "separation"});
   ASSERT_TRUE(eventually([&] { return std::filesystem::exists(pictures() + "/separation.png"); },
                          std::chrono::seconds(100)))
       << page.output();
@@ -106,9 +104,8 @@ TEST(View, ShowsHowMuchIsLeftBetweenAPersonAndARobot) {
 TEST(View, SpeaksFoxglovesProtocolToItsOwnClient) {
   RunningSmallCell running;
   View view(running.arguments());
-  ChildProcess client("/usr/bin/env", {"node", kScripts + "/foxglove.mjs", view.socket(), "reports",
-                                       "30", "clearance/catalogue", "clearance/zones", "/tf",
-                                       "/clearance/bodies", "/clearance/closest"});
+  Script client("foxglove", {view.socket(), "reports", "30", "clearance/catalogue",
+                             "clearance/zones", "/tf", "/clearance/bodies", "/clearance/closest"});
   EXPECT_EQ(client.wait(), 0) << client.output();
   ASSERT_EQ(lines_of(client).size(), 1u) << client.output();
   const json found = lines_of(client).front();
@@ -156,8 +153,7 @@ TEST(View, DrawsLiveWhatFollowsFrames) {
   fixed.send({{"mir", "box_link", {0.5, 0, 0}}});
   ChildProcess daemon(kDaemon, with({cell}, dds));
   View view(with({cell}, dds));
-  ChildProcess client("/usr/bin/env",
-                      {"node", kScripts + "/foxglove.mjs", view.socket(), "reports", "120", "/tf"});
+  Script client("foxglove", {view.socket(), "reports", "120", "/tf"});
   ASSERT_TRUE(eventually([&] {
     frames.send({{"map", "mir", {1, 0, 0}}});
     joints.send({"shoulder", "elbow", "push"}, {0, 0, 0.1});
@@ -183,8 +179,7 @@ TEST(View, ShowsToWhoeverLooksAgainLaterWhatIsAndNotWhatWas) {
   std::uint64_t last = 0;
   for (int look = 0; look < 2; ++look) {
     SCOPED_TRACE(look);
-    ChildProcess client("/usr/bin/env",
-                        {"node", kScripts + "/foxglove.mjs", view.socket(), "reports", "5", "/tf"});
+    Script client("foxglove", {view.socket(), "reports", "5", "/tf"});
     EXPECT_EQ(client.wait(), 0) << client.output();
     ASSERT_EQ(lines_of(client).size(), 1u) << client.output();
     const std::vector<std::uint64_t> cycles = lines_of(client).front()["cycles"];
@@ -206,7 +201,7 @@ TEST(View, RecordingsHoldTheSceneForThreeDimensionalViewers) {
   ChildProcess daemon(kDaemon, with({cell.path()}, dds));
   ChildProcess robot(kRobot, with({cell.path(), "--rate", "200"}, dds));
   EXPECT_EQ(record.wait(), 0) << record.output();
-  ChildProcess reader("/usr/bin/env", {"node", kScripts + "/scene.mjs", file});
+  Script reader("scene", {file});
   EXPECT_EQ(reader.wait(), 0) << reader.output();
   ASSERT_EQ(lines_of(reader).size(), 1u) << reader.output();
   const json found = lines_of(reader).front();

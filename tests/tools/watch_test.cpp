@@ -120,8 +120,8 @@ TEST(Watch, SaysThatReportsAreOldAfterItWasHeldUp) {
   ChildProcess watch(kWatch, with({"--plain"}, dds));
   ASSERT_TRUE(eventually([&] { return watch.wrote("cycle "); })) << watch.output();
   watch.signal(SIGSTOP);
-  // three times the age at which a report is called old
-  std::this_thread::sleep_for(std::chrono::milliseconds(1500));
+  // A report is called old when it is 0.5 s old.
+  std::this_thread::sleep_for(std::chrono::milliseconds(600));
   watch.signal(SIGCONT);
   // The line of that moment, or the line one second later.
   EXPECT_TRUE(eventually(

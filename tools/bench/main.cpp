@@ -125,7 +125,7 @@ int run(int argc, char** argv) {
   }
 #ifdef CLEARANCE_BENCH_FCL
   if (argc > 1 && std::string_view(argv[1]) == "--ask")
-    return clearance::bench::run_ask(std::vector<std::string>(argv + 2, argv + argc));
+    return clearance::bench::run_ask(argc - 1, argv + 1);
 #endif
   std::vector<std::filesystem::path> cells, meshes;
   std::vector<std::string> options;

@@ -4,7 +4,7 @@
 #include <chrono>
 #include <utility>
 
-#include "monitor/app/log_lines.hpp"
+#include "monitor/app/log_line.hpp"
 #include "monitor/app/ros_outputs.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/wire/convert.hpp"

@@ -165,40 +165,31 @@ int no_result(const SendArguments& arguments, const client::Connection& connecti
 
 }  // namespace
 
-CLI::App* add_send(CLI::App& app, SendArguments& arguments) {
-  CLI::App* const send =
-      app.add_subcommand("send", "Change the scene of a running daemon, and print its answer");
-  send->add_option("CHANGES", arguments.changes, "A file with changes (YAML); -: stdin");
-  send->add_option("--change", arguments.change,
-                   "A change in YAML, after those of CHANGES; repeatable")
-      ->allow_extra_args(false);
-  send->add_option("--as", arguments.client,
-                   "Name of this client: one that the daemon's cell names under 'commands'")
-      ->capture_default_str();
-  send->add_option("--file", arguments.files,
-                   "Send this file along; changes name it as \"sent:NAME\"; repeatable")
-      ->check(CLI::ExistingFile)
-      ->allow_extra_args(false);
-  send->add_option("--timeout", arguments.timeout_s, "Wait for each result for this time, s")
-      ->check(positive_number())
-      ->capture_default_str();
-  send->add_flag("--dry-run", arguments.dry_run, "Only ask whether the changes would be accepted");
-  CLI::Option* const back = send->add_option("--back", arguments.back,
-                                             "A file with changes that take those of CHANGES back");
-  send->add_option("--repeat", arguments.repeats,
-                   "Send CHANGES and BACK in turns, this often, and print the time until the first "
-                   "report that holds them")
-      ->check(whole_number(1, 10'000'000))
-      ->needs(back);
+CommandLine send_line(SendArguments& arguments) {
+  CommandLine line{.about = "Change the scene of a running daemon, and print its answer",
+                   .footer = kSendFooter,
+                   .name = "send"};
+  line.add({
+      {"CHANGES", &arguments.changes, "A file with changes (YAML); -: stdin"},
+      {"--change", &arguments.change, "A change in YAML, after those of CHANGES; repeatable"},
+      {"--as", &arguments.client,
+       "Name of this client: one that the daemon's cell names under 'commands'", shown()},
+      {"--file", &arguments.files,
+       "Send this file along; changes name it as \"sent:NAME\"; repeatable", existing_file()},
+      {"--timeout", &arguments.timeout_s, "Wait for each result for this time, s",
+       positive_number(), shown()},
+      {"--dry-run", &arguments.dry_run, "Only ask whether the changes would be accepted"},
+      {"--back", &arguments.back, "A file with changes that take those of CHANGES back"},
+      {"--repeat", &arguments.repeats,
+       "Send CHANGES and BACK in turns, this often, and print the time until the first report that "
+       "holds them",
+       whole_number(1, 10'000'000), needing("--back")},
+  });
   for (const TopicKind kind :
-       {TopicKind::kCommands, TopicKind::kCommandResults, TopicKind::kDistances}) {
-    const Topic& each = topic(kind);
-    send->add_option(fmt::format("--{}", each.key), arguments.topics.*each.name, "Topic name")
-        ->capture_default_str();
-  }
-  arguments.dds.add_to(*send, false);
-  send->footer(kSendFooter);
-  return send;
+       {TopicKind::kCommands, TopicKind::kCommandResults, TopicKind::kDistances})
+    line.add({topic_option(kind, arguments.topics)});
+  arguments.dds.add_to(line, false);
+  return line;
 }
 
 int send_changes(const SendArguments& arguments) {

@@ -1,7 +1,6 @@
 // clearance-scene send: changes the scene of a running daemon.
 #pragma once
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <filesystem>
 #include <memory>
@@ -26,7 +25,7 @@ struct SendArguments {
   Topics topics;
 };
 
-CLI::App* add_send(CLI::App& app, SendArguments& arguments);
+[[nodiscard]] CommandLine send_line(SendArguments& arguments);
 
 // Returns the exit code. Throws DdsError.
 [[nodiscard]] int send_changes(const SendArguments& arguments);

@@ -1,11 +1,11 @@
 // An example of a program beside the daemon: an arm that keeps away from obstacles by the daemon's
 // gradients, tells it what it holds, or asks it before each motion.
-#include <CLI/CLI.hpp>
 #include <cstdio>
 #include <string>
 
 #include "monitor/app/cell_arguments.hpp"
 #include "monitor/app/log.hpp"
+#include "monitor/app/options.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/app/stop_signal.hpp"
@@ -41,11 +41,14 @@ struct Arguments {
   double speed = 1.0;  // of the jogs that are asked about
 };
 
-CLI::App* add_kind(CLI::App& app, Arguments& arguments, const char* name, const char* help) {
-  CLI::App* const kind = app.add_subcommand(name, help);
-  arguments.cell.add_to(*kind);
-  arguments.dds.add_to(*kind);
-  return kind;
+// The cell and DDS, and what this kind has beside.
+CommandLine kind(Arguments& arguments, const char* name, const char* about,
+                 std::vector<Option> options) {
+  CommandLine line{.about = about, .name = name};
+  arguments.cell.add_to(line);
+  arguments.dds.add_to(line);
+  line.add(std::move(options));
+  return line;
 }
 
 int no_answer(const client::Connection& connection, const std::string& what) {
@@ -144,38 +147,32 @@ int ask_each(client::Connection& connection, const Arguments& arguments, StopSig
 }
 
 int run(int argc, char** argv, StopSignal& signal) {
-  CLI::App app("An arm beside the daemon that avoids obstacles, carries a part, or asks first.");
   Arguments arguments;
-  CLI::App* const avoiding = add_kind(app, arguments, "avoid",
-                                      "Follows a path past moving obstacles, without and with "
-                                      "keeping away from them");
-  avoiding->add_option("--seconds", arguments.avoid.seconds, "Length of each run")
-      ->check(CLI::Range(2.0, 3600.0))
-      ->capture_default_str();
-  avoiding->add_option("--keep", arguments.avoid.controller.keep_m, "Distance that is kept, m")
-      ->check(CLI::Range(0.0, 1.0))
-      ->capture_default_str();
-  CLI::App* const picking = add_kind(app, arguments, "pick",
-                                     "Carries a part over a wall, without and with telling the "
-                                     "daemon what the arm holds");
-  picking->add_option("--speed", arguments.pick.speed, "Speed of the motion; 1: about 10 s a run")
-      ->check(CLI::Range(0.1, 3.0))
-      ->capture_default_str();
-  CLI::App* const asking =
-      add_kind(app, arguments, "ask", "Jogs past a wall, and asks the daemon before each jog");
-  asking->add_option("--speed", arguments.speed, "Speed of the jogs; 1: about 10 s in all")
-      ->check(CLI::Range(0.1, 5.0))
-      ->capture_default_str();
-  app.require_subcommand(1);
-  app.footer(kFooter);
-  if (const auto done = parse(app, argc, argv)) return *done;
+  CommandLine line{"An arm beside the daemon that avoids obstacles, carries a part, or asks first.",
+                   kFooter};
+  line.subcommands = {
+      kind(arguments, "avoid",
+           "Follows a path past moving obstacles, without and with keeping away from them",
+           {{"--seconds", &arguments.avoid.seconds, "Length of each run", number_in(2.0, 3600.0),
+             shown()},
+            {"--keep", &arguments.avoid.controller.keep_m, "Distance that is kept, m",
+             number_in(0.0, 1.0), shown()}}),
+      kind(arguments, "pick",
+           "Carries a part over a wall, without and with telling the daemon what the arm holds",
+           {{"--speed", &arguments.pick.speed, "Speed of the motion; 1: about 10 s a run",
+             number_in(0.1, 3.0), shown()}}),
+      kind(arguments, "ask", "Jogs past a wall, and asks the daemon before each jog",
+           {{"--speed", &arguments.speed, "Speed of the jogs; 1: about 10 s in all",
+             number_in(0.1, 5.0), shown()}}),
+  };
+  if (const auto done = parse(line, argc, argv)) return *done;
   start_log("example_arm", "error");
   const auto cell = cell_or_errors(arguments.cell.read());
   if (!cell) return kBadCell;
   route_dds_log();
   client::Connection connection(arguments.dds.resolve(*cell), cell->topics);
-  if (avoiding->parsed()) return avoid_twice(*cell, connection, arguments, signal);
-  if (picking->parsed()) return pick_twice(connection, arguments, signal);
+  if (line.chosen == "avoid") return avoid_twice(*cell, connection, arguments, signal);
+  if (line.chosen == "pick") return pick_twice(connection, arguments, signal);
   return ask_each(connection, arguments, signal);
 }
 

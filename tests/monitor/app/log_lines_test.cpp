@@ -1,5 +1,5 @@
 // The wording of every log line of the daemon is kept in tests/monitor/app/messages.golden.
-#include "monitor/app/all_log_lines.hpp"
+#include "monitor/interface/all_log_lines.hpp"
 #include "tests/shared/places.hpp"
 
 #include <gtest/gtest.h>
@@ -33,8 +33,9 @@ Argument sample(std::size_t place) {
 
 template <class... Arguments, std::size_t... kPlaces>
 std::string with_samples(const LogLine<Arguments...>& line, std::index_sequence<kPlaces...>) {
-  return fmt::format("{}: {}\n", spdlog::level::to_string_view(line.level),
-                     rendered(line, sample<Arguments>(kPlaces)...));
+  static constexpr std::string_view kLevels[] = {"info", "warning", "error"};
+  return fmt::format("{}: {} [{}]\n", kLevels[static_cast<int>(line.level)],
+                     worded(line, sample<Arguments>(kPlaces)...), line.code);
 }
 template <class... Arguments>
 std::string with_samples(const LogLine<Arguments...>& line) {
@@ -49,7 +50,7 @@ TEST(LogLines, AreWordedAsInTheGoldenFile) {
 }
 
 TEST(LogLines, AreAllInTheList) {
-  const std::string header = content(test::places::sources() + "/monitor/app/log_lines.hpp");
+  const std::string header = content(test::places::sources() + "/monitor/app/log_line.hpp");
   std::size_t entries = 0;
   for (std::size_t at = 0; (at = header.find("constexpr LogLine<", at)) != std::string::npos;
        ++at) {
@@ -58,13 +59,14 @@ TEST(LogLines, AreAllInTheList) {
   EXPECT_EQ(entries, std::tuple_size_v<decltype(lines::kAll)>);
 }
 
+// Two lines with one code differ in their level.
 TEST(LogLines, HaveCodesOfTheirOwnInSmallLetters) {
-  std::set<std::string_view> codes;
-  const auto add = [&](std::string_view code) {
-    EXPECT_TRUE(codes.insert(code).second) << code;
+  std::set<std::pair<std::string_view, LogLevel>> codes;
+  const auto add = [&](std::string_view code, LogLevel level) {
+    EXPECT_TRUE(codes.emplace(code, level).second) << code;
     EXPECT_EQ(code.find_first_not_of("abcdefghijklmnopqrstuvwxyz-"), code.npos) << code;
   };
-  std::apply([&](const auto&... line) { (add(line.code), ...); }, lines::kAll);
+  std::apply([&](const auto&... line) { (add(line.code, line.level), ...); }, lines::kAll);
 }
 
 TEST(Counted, HasTheRightPlural) {

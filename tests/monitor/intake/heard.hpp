@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -53,8 +54,8 @@ class Heard {
     EXPECT_EQ(came.size(), 1u);
     return came.empty() ? PoseBatch{} : came.front();
   }
-  [[nodiscard]] std::size_t told(News::Cause cause) const {
-    return static_cast<std::size_t>(std::ranges::count(news, cause, &News::cause));
+  [[nodiscard]] std::size_t told(std::string_view code) const {
+    return static_cast<std::size_t>(std::ranges::count(news, code, &News::code));
   }
 
   Now now{.realtime_ns = 1'700'000'000'000'000'000, .monotonic_ns = 50'000'000'000};

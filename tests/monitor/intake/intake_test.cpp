@@ -85,10 +85,10 @@ TEST_F(IntakeTest, GivesASecondWriterOfANameANameOfItsOwnAndTellsOnceOfEach) {
   heard.intake.keep({2});
   take(3, 2);
   EXPECT_EQ(heard.one().source.view(), "arm");
-  std::vector<News::Cause> causes;
-  for (const News& news : heard.intake.take_news()) causes.push_back(news.cause);
-  EXPECT_EQ(causes, (std::vector{News::Cause::kNewSource, News::Cause::kSourceRefused,
-                                 News::Cause::kNewSource, News::Cause::kSourceTakenOver}));
+  std::vector<std::string_view> codes;
+  for (const News& news : heard.intake.take_news()) codes.push_back(news.code);
+  EXPECT_EQ(codes, (std::vector{lines::kNewSource.code, lines::kSourceRefused.code,
+                                lines::kNewSource.code, lines::kSourceTakenOver.code}));
 }
 
 // A third writer is heard as well, since it may contradict the other two. It keeps its name while
@@ -130,7 +130,7 @@ TEST_F(IntakeTest, TellsOnceOfASourceWhosePosesAreOfAnotherScene) {
   take(2, 1, 1, "arm", cell.scene.revision + 1);
   EXPECT_EQ(heard.all().size(), 2u) << "the tick counts them";
   const std::vector<News> news = heard.intake.take_news();
-  EXPECT_EQ(std::ranges::count(news, News::Cause::kOtherRevision, &News::cause), 1);
+  EXPECT_EQ(std::ranges::count(news, lines::kOtherRevision.code, &News::code), 1);
 }
 
 TEST_F(IntakeTest, TellsOnceOfAnInputThatComesTooSeldomForItsAgeLimit) {
@@ -148,7 +148,7 @@ TEST_F(IntakeTest, TellsOnceOfAnInputThatComesTooSeldomForItsAgeLimit) {
   }
   const std::vector<News> news = slow.intake.take_news();
   ASSERT_EQ(news.size(), 1u);
-  EXPECT_EQ(news[0].cause, News::Cause::kSlowInput);
+  EXPECT_EQ(news[0].code, lines::kSlowInput.code);
 }
 
 // Joints of a robot on this project's own topic.

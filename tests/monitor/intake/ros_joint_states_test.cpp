@@ -45,7 +45,7 @@ TEST_F(RosJointStatesTest, ComeInAnyOrderInPartAndWithNamesThatTheCellDoesNotHav
   EXPECT_TRUE(batch.joints[0].has_velocity);
   EXPECT_EQ(heard.intake.joint_states().unknown_names(), (std::set<std::string>{"wheel"}));
   take({{"wheel"}, {1.0}});
-  EXPECT_EQ(heard.told(News::Cause::kUnknownJoints), 1u) << "each name once";
+  EXPECT_EQ(heard.told(lines::kUnknownJoints.code), 1u) << "each name once";
 }
 
 // The tick refuses such a joint without a name: only the message has it.
@@ -63,7 +63,7 @@ TEST_F(RosJointStatesTest, OfOurOwnTopicWithANameThatTheCellDoesNotHaveAreTold) 
   message.cdr.assign(bytes.begin(), bytes.end());
   EXPECT_TRUE(heard.take(message));
   EXPECT_TRUE(heard.take(message));
-  EXPECT_EQ(heard.told(News::Cause::kUnknownJoints), 1u) << "each name once";
+  EXPECT_EQ(heard.told(lines::kUnknownJoints.code), 1u) << "each name once";
 }
 
 TEST_F(RosJointStatesTest, OfANamespaceThatARobotNamesNeedNoPrefix) {
@@ -102,7 +102,7 @@ TEST_F(RosJointStatesTest, OfSeveralWritersOfATopicHaveNamesOfTheirOwn) {
 TEST_F(RosJointStatesTest, WithoutPositionsSayNothingAndWithTooFewAreRefusedByTheTick) {
   take({{"right_shoulder"}, {}, {1.0}});
   EXPECT_TRUE(heard.one().joints.empty());
-  EXPECT_EQ(heard.told(News::Cause::kNoPositions), 1u);
+  EXPECT_EQ(heard.told(lines::kNoPositions.code), 1u);
   take({{"right_shoulder", "right_elbow"}, {0.5}, {0.1}});
   const PoseBatch batch = heard.one();
   ASSERT_EQ(batch.joints.size(), 2u);
@@ -132,7 +132,7 @@ TEST_F(RosJointStatesTest, OfAnotherClockAreToldOnceLiveAndReplacedOutOfALog) {
     log.take(simulated);
     EXPECT_EQ(heard.one().joints.at(0).stamp_ns, 12'340'000'000);
     EXPECT_EQ(log.one().joints.at(0).stamp_ns, now());
-    EXPECT_EQ(heard.told(News::Cause::kOtherClock),
+    EXPECT_EQ(heard.told(lines::kOtherClock.code),
               i + 1 < StampCheck::kOtherClockMessages ? 0u : 1u);
   }
   const auto topic = log.intake.topic({simulated.topic, simulated.type});
@@ -144,7 +144,7 @@ TEST_F(RosJointStatesTest, OfMoreTopicsThanAreHeardTheFirstAreTaken) {
     const std::string topic = "/robot" + std::to_string(i) + "/joint_states";
     EXPECT_EQ(take({{"right_push"}, {0.1}}, topic), i < RosJointStates::kMostTopics);
   }
-  EXPECT_EQ(heard.told(News::Cause::kTooManyTopics), 1u);
+  EXPECT_EQ(heard.told(lines::kTooManyTopics.code), 1u);
 }
 
 TEST_F(RosJointStatesTest, ThatDoNotDecodeAreCountedAndGiveNothing) {

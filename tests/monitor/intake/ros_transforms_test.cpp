@@ -132,7 +132,7 @@ TEST_F(RosTransformsTest, OfTwoPublishersOfAFrameAreTwoSources) {
   send({{"map", "cart_link", {1, 0, 0}}}, "/tf", 1);
   send({{"map", "cart_link", {2, 0, 0}}}, "/tf", 2);
   EXPECT_EQ(places_of(0), (Places{{"/tf", 1.0}, {"/tf#2", 2.0}}));
-  EXPECT_EQ(heard.told(News::Cause::kFrameOfTwo), 1u);
+  EXPECT_EQ(heard.told(lines::kFrameOfTwo.code), 1u);
   // The first publisher is silent for a second.
   heard.pass(kSourceSilentNs);
   send({{"map", "cart_link", {2.1, 0, 0}}}, "/tf", 2);
@@ -190,7 +190,7 @@ TEST_F(RosTransformsTest, ThatAreNoPosesAreRefused) {
         {"", "cart_link", {7, 0, 0}},
         {"map", "", {7, 0, 0}}});
   EXPECT_EQ(place_of(0), Vec3(8, 0, 0));
-  EXPECT_EQ(heard.told(News::Cause::kFrameRefused), 2u) << "once for each frame";
+  EXPECT_EQ(heard.told(lines::kFrameRefused.code), 2u) << "once for each frame";
 }
 
 TEST_F(RosTransformsTest, ThatGoRoundInACircleSayNothingUntilTheyDoNot) {
@@ -210,7 +210,7 @@ TEST_F(RosTransformsTest, OfAFrameWithAnotherParentAreUsedAtOnce) {
   EXPECT_EQ(place_of(1), Vec3(1, 0, 0));
   send({{"map", "rack", {1, 0, 0}}, {"map", "hand", {0, 1, 0}}, {"hand", "tool0"}});
   EXPECT_EQ(place_of(1), Vec3(0, 1, 0));
-  EXPECT_EQ(heard.told(News::Cause::kFrameMoved), 1u);
+  EXPECT_EQ(heard.told(lines::kFrameMoved.code), 1u);
 }
 
 TEST_F(RosTransformsTest, WithoutAStampHoldWhenTheyWereSent) {
@@ -242,13 +242,13 @@ TEST_F(RosTransformsTest, ThatAreMissingAreToldAfterFiveSeconds) {
   EXPECT_EQ(heard.news.size(), 0u);
   heard.pass(1);
   heard.settle();
-  EXPECT_EQ(heard.told(News::Cause::kNoTransforms), 3u) << "the cart, the tool and the base";
+  EXPECT_EQ(heard.told(lines::kNoTransforms.code), 3u) << "the cart, the tool and the base";
   send({{"map", "cart_link"}, {"earth", "tool0"}});
   heard.settle();
-  EXPECT_EQ(heard.told(News::Cause::kFrameFound), 1u);
+  EXPECT_EQ(heard.told(lines::kFrameFound.code), 1u);
   heard.pass(RosTransforms::kMissingNs);
   heard.settle();
-  EXPECT_EQ(heard.told(News::Cause::kFrameMissing), 1u) << "the tool, which leads elsewhere";
+  EXPECT_EQ(heard.told(lines::kFrameMissing.code), 1u) << "the tool, which leads elsewhere";
 }
 
 // A log gives the poses of all followers with every message, in any namespace. Objects without a

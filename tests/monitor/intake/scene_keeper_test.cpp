@@ -122,13 +122,13 @@ TEST_F(KeptScene, IntakeHandsOnTheTopicsThatTheCellNames) {
   ASSERT_EQ(came.size(), 1u);
   EXPECT_EQ(came[0].type, RawScene::Type::kCollisionObject);
   EXPECT_EQ(came[0].cdr, cdr_of(some_object("shelf")));
-  EXPECT_EQ(heard.told(News::Cause::kTopicHeard), 1u);
+  EXPECT_EQ(heard.told(lines::kTopicHeard.code), 1u);
 
   // A log names the topic, and does not use it.
   test::Heard log(cell_, {.is_log = true});
   EXPECT_FALSE(log.take(sent("/collision_object", "CollisionObject")));
   ASSERT_EQ(log.news.size(), 1u);
-  EXPECT_TRUE(log.news[0].is_warning);
+  EXPECT_TRUE(log.news[0].level == LogLevel::kWarn);
 }
 
 // The other keeper has not heard the scene. Frames, subframes, margins and the matrix are in no

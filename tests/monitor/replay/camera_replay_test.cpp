@@ -1,4 +1,4 @@
-// A bag with depth images and joints becomes distances.
+// A bag with depth images or points, and joints, becomes distances.
 //
 // Oracle: the scene that is rendered into the images, by closed forms for boxes, spheres and the
 // points where rays meet them.
@@ -69,24 +69,34 @@ struct SeenPoint {
   double size;
 };
 
-// An arm below a camera that looks down, with depth images on this topic.
-Cell scara_with_eye(const ScratchFolder& folder, const std::string& topic) {
+// An arm below a camera that looks down, with such messages.
+Cell scara_with_eye(const ScratchFolder& folder, const std::string& messages) {
   write_text(folder / "scara.urdf", kScaraUrdf);
   return read_good(
       "name: test\nunits: {length: m, angle: rad}\nrobots: [{name: arm, urdf: scara.urdf}]\n"
-      "sensors:\n  - {name: eye, depth_image: " +
-          topic +
-          ", size: [80, 60], depth_error: {constant: 0.002, quadratic: 0.001}, range: [0.3, 5], "
+      "sensors:\n  - {name: eye, " +
+          messages +
+          ", depth_error: {constant: 0.002, quadratic: 0.001}, range: [0.3, 5], "
           "own_shell: 0.005, age_limit_ms: 150, mount: "
           "{pose: {xyz: [0.9, 0, 2.2], rpy: [3.141592653589793, 0, 0]}}}\n"
           "pairs:\n  - {between: [arm, eye]}\n",
       folder / "cell.yaml");
 }
 
-TEST(CameraReplay, BagWithDepthImagesAndJointsGivesTrueDistances) {
+// What a camera sends, and how the cell states it.
+struct Form {
+  const char* name;
+  const char* messages;
+  bool is_image, in_rows;
+};
+class CameraReplayOf : public testing::TestWithParam<Form> {};
+
+TEST_P(CameraReplayOf, ABagWithJointsGivesTrueDistances) {
   const ScratchFolder folder;
-  const Cell cell = scara_with_eye(folder, "/cam/depth");
-  std::vector<RosMessage> bag{camera_info(kBagStart, kView)};
+  const Form form = GetParam();
+  const Cell cell = scara_with_eye(folder, form.messages);
+  std::vector<RosMessage> bag;
+  if (form.is_image) bag.push_back(camera_info(kBagStart, kView));
   std::map<std::int64_t, std::vector<SeenPoint>> frames;  // by stamp: what is not the robot
   Random random(5);
   for (int step = 0; step < kSteps; ++step) {
@@ -97,7 +107,8 @@ TEST(CameraReplay, BagWithDepthImagesAndJointsGivesTrueDistances) {
     if (step % kFrameSteps != 0) continue;
     const std::vector<RenderedPixel> pixels = render(scene_at(q), kView, camera_place());
     const std::vector<float> depth = measured(pixels, kError, 0.9, random);
-    bag.push_back(depth_image(stamp, kView, depth));
+    bag.push_back(form.is_image ? depth_image(stamp, kView, depth)
+                                : points_of(stamp, kView, depth, form.in_rows));
     for (std::size_t i = 0; i < pixels.size(); ++i) {
       if (pixels[i].number < 10 || std::isnan(depth[i])) continue;
       const double z = depth[i], e = kError.at(z);
@@ -151,12 +162,20 @@ TEST(CameraReplay, BagWithDepthImagesAndJointsGivesTrueDistances) {
   EXPECT_GT(near, 50);
   EXPECT_GT(shells, 50);
 }
+INSTANTIATE_TEST_SUITE_P(
+    All, CameraReplayOf,
+    testing::Values(Form{"DepthImages", "depth_image: /cam/depth, size: [80, 60]", true, true},
+                    Form{"Points", "points: /cam/points", false, false},
+                    Form{"PointsWithASpacing", "points: /cam/points, spacing: 0.0167", false, true},
+                    Form{"PointsWithNeighbours", "points: /cam/points, spacing: neighbours", false,
+                         true}),
+    [](const auto& info) { return info.param.name; });
 
 // The texts of the failures of a bag with joints, one image on /cam/depth and, if it is said, the
 // image's CameraInfo.
 std::vector<std::string> failures(const std::string& topic, bool has_info) {
   const ScratchFolder folder;
-  const Cell cell = scara_with_eye(folder, topic);
+  const Cell cell = scara_with_eye(folder, "depth_image: " + topic + ", size: [80, 60]");
   std::vector<RosMessage> bag{
       joint_state(kBagStart, kBagStart, {{"shoulder", "elbow", "push"}, {0, 0, 0}, {}, {}}),
       depth_image(kBagStart, kView, std::vector<float>(80 * 60, 1.0F))};

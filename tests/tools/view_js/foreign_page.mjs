@@ -10,7 +10,7 @@ const [port] = process.argv.slice(2);
 const foreign = http.createServer((_, answer) => answer.setHeader("Content-Type", "text/html").end("<p>A page of another server</p>"));
 foreign.listen(0, "127.0.0.1");
 await once(foreign, "listening");
-const { browser, page } = await openBrowser({ more: ["--host-resolver-rules=MAP rebound.example 127.0.0.1"] });
+const { browser, page } = await openBrowser();
 
 // What this page gets from an address: whether its WebSocket opens, and whether the cell can be read.
 async function gets(from, address) {

@@ -13,7 +13,6 @@
 
 #include <fcl/narrowphase/collision.h>
 #include <fcl/narrowphase/continuous_collision.h>
-#include <CLI/CLI.hpp>
 
 #include <fmt/format.h>
 #include <algorithm>
@@ -27,6 +26,7 @@
 #include <vector>
 
 #include "config/cell/cell_file.hpp"
+#include "monitor/app/options.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/ask/asker.hpp"
@@ -235,24 +235,19 @@ struct Tally {
 
 }  // namespace
 
-int run_ask(const std::vector<std::string>& arguments) {
-  CLI::App app(
-      "clearance-bench --ask: short motions of an arm, certified, beside FCL's continuous "
-      "collision and beside postures at every degree",
-      "clearance-bench --ask");
-  app.footer("Example: clearance-bench --ask --motions 2000");
+int run_ask(int argc, char** argv) {
   int motions = 1000, obstacles = 30;
   double longest = 0.5;
-  app.add_option("--motions", motions, "How many motions")->check(CLI::Range(1, 1'000'000));
-  app.add_option("--obstacles", obstacles, "Objects around the arm")->check(CLI::Range(1, 1000));
-  app.add_option("--longest", longest, "Largest motion of a joint, rad")
-      ->check(CLI::Range(0.01, 3.0));
-  std::vector<std::string> reversed(arguments.rbegin(), arguments.rend());
-  try {
-    app.parse(reversed);
-  } catch (const CLI::ParseError& error) {
-    return app.exit(error);
-  }
+  CommandLine line{
+      "clearance-bench --ask: short motions of an arm, certified, beside FCL's continuous "
+      "collision and beside postures at every degree",
+      "Example: clearance-bench --ask --motions 2000"};
+  line.add({
+      {"--motions", &motions, "How many motions", whole_number_in(1, 1'000'000)},
+      {"--obstacles", &obstacles, "Objects around the arm", whole_number_in(1, 1000)},
+      {"--longest", &longest, "Largest motion of a joint, rad", number_in(0.01, 3.0)},
+  });
+  if (const auto done = parse(line, argc, argv)) return *done;
   Draw draw(35);
   const std::filesystem::path beside = std::filesystem::path(CLEARANCE_CELLS) / "asked.yaml";
   const std::optional<Cell> cell = cell_or_errors(parse_cell(cell_text(draw, obstacles), beside));

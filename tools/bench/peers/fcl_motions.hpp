@@ -2,12 +2,9 @@
 // every degree.
 #pragma once
 
-#include <string>
-#include <vector>
-
 namespace clearance::bench {
 
-// Prints a table, and returns the exit status. `arguments` follow --ask.
-[[nodiscard]] int run_ask(const std::vector<std::string>& arguments);
+// Prints a table, and returns the exit status. argv[0] is "--ask".
+[[nodiscard]] int run_ask(int argc, char** argv);
 
 }  // namespace clearance::bench

@@ -5,14 +5,13 @@
 // what tests, FAULTS.md and other programs look for. An argument "2 joints" comes from counted().
 #pragma once
 
-#include "monitor/app/log_line.hpp"
+#include "monitor/interface/log_line.hpp"
 
 namespace clearance::lines {
 
 using Text = std::string_view;
 using Count = std::uint64_t;
-inline constexpr auto kInfo = spdlog::level::info, kWarn = spdlog::level::warn,
-                      kError = spdlog::level::err;
+using enum LogLevel;
 
 // ---- Start and end of the daemon
 
@@ -88,6 +87,22 @@ inline constexpr LogLine<Text, Text, Text> kTwoSources{
     "two-sources", kWarn,
     "{} is sent by '{}' and by '{}': poses of the latter are not used, and none while the two "
     "contradict each other, unless 'source' in the cell tells the two apart"};
+inline constexpr LogLine<Text, Text, Text> kNewSource{"new-source", kInfo, "{} from source '{}'{}"};
+inline constexpr LogLine<Text, Text, Text> kSourceTakenOver{
+    "source-taken-over", kWarn, "source '{}' is now writer {}; before, it was writer {}"};
+inline constexpr LogLine<Text, Text, Text> kSourceRefused{"source-refused", kWarn,
+                                                          "{} of {} are not used: {}"};
+inline constexpr LogLine<Text, Count, Count> kOtherRevision{
+    "other-revision", kWarn,
+    "source '{}' sends poses for scene revision {:016x}, this cell's is {:016x}: not used"};
+inline constexpr LogLine<Text, std::int64_t, Text, std::int64_t, std::int64_t> kSlowInput{
+    "slow-input", kWarn,
+    "{} come every {} ms, and the age limit of {} is {} ms: late again and again, so that zones "
+    "flicker; age_limit_ms of {} would fit"};
+inline constexpr LogLine<Text, double, Text> kOtherClock{
+    "other-clock", kWarn,
+    "{} are stamped {:+.3f} s off the time at which they are sent: by a clock of their own, as of "
+    "a simulation (use_sim_time); {} would take the time at which they are sent"};
 inline constexpr LogLine<Text, Text, Text> kSourceChanged{"source-changed", kWarn,
                                                           "{}: sent by '{}' now, before by '{}'"};
 inline constexpr LogLine<Text> kVelocitiesContradict{
@@ -97,6 +112,39 @@ inline constexpr LogLine<Count, Text, Text, Text, Count> kRefused{
     "refused", kWarn, "{} {} refused in the last {}: {} ({} since the start)"};
 inline constexpr LogLine<Text> kMoreLeftOut{"more-left-out", kWarn,
                                             "{} about refusals and late inputs left out"};
+
+// ---- Topics and frames of ROS 2
+
+inline constexpr LogLine<Text, Text> kTopicHeard{"topic-heard", kInfo, "{} on {}"};
+inline constexpr LogLine<Text> kTopicNotUsed{
+    "topic-heard", kWarn,
+    "messages of {} are not used: only a daemon or a replay changes the scene"};
+inline constexpr LogLine<Text, Count> kTooManyTopics{
+    "too-many-topics", kWarn, "{} is one topic of joint states too many: {} are heard"};
+inline constexpr LogLine<Text> kNoPositions{
+    "no-positions", kInfo, "joint states from '{}' without positions are not used"};
+inline constexpr LogLine<Text, Text> kUnknownJoints{
+    "unknown-joints", kWarn, "joints from '{}' that the cell does not have are refused: {}"};
+inline constexpr LogLine<Text, Text> kUnknownRosJoints{
+    "unknown-joints", kInfo,
+    "joints from '{}' that no robot of this cell has there are not used: {}"};
+inline constexpr LogLine<Text, Text, Text> kFrameRefused{
+    "frame-refused", kWarn, "transforms of frame '{}' to '{}' are not used: {}"};
+inline constexpr LogLine<Text, Count> kTooManyFrames{
+    "too-many-frames", kWarn, "frame '{}' is one too many: {} frames are heard"};
+inline constexpr LogLine<Text> kFrameOfTwo{
+    "frame-of-two", kWarn,
+    "frame '{}' is sent by several publishers that contradict each other: what follows it is "
+    "unknown while they do, unless 'source' in the cell tells them apart"};
+inline constexpr LogLine<Text, Text, Text, Text> kFrameMoved{
+    "frame-moved", kInfo, "frame '{}' hangs on '{}' now, before on '{}'{}"};
+inline constexpr LogLine<Text, Text, Text> kFrameMissing{
+    "frame-missing", kWarn, "{} is not known: it follows the frame '{}', {}"};
+// No transforms at all. The caller adds to the sentence what there is instead.
+inline constexpr LogLine<Text, Text, Text> kNoTransforms{
+    "no-transforms", kWarn, "{} is not known: it follows the frame '{}', {}"};
+inline constexpr LogLine<Text, Text> kFrameFound{"frame-found", kInfo,
+                                                 "frame '{}', which {} follows, is there"};
 
 // ---- Sensors
 

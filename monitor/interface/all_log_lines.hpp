@@ -3,7 +3,7 @@
 
 #include <tuple>
 
-#include "monitor/app/log_lines.hpp"
+#include "monitor/interface/log_lines.hpp"
 
 namespace clearance::lines {
 
@@ -39,10 +39,29 @@ inline constexpr std::tuple kAll{kStarted,
                                  kPosesContradict,
                                  kPosesBack,
                                  kTwoSources,
+                                 kNewSource,
+                                 kSourceTakenOver,
+                                 kSourceRefused,
+                                 kOtherRevision,
+                                 kSlowInput,
+                                 kOtherClock,
                                  kSourceChanged,
                                  kVelocitiesContradict,
                                  kRefused,
                                  kMoreLeftOut,
+                                 kTopicHeard,
+                                 kTopicNotUsed,
+                                 kTooManyTopics,
+                                 kNoPositions,
+                                 kUnknownJoints,
+                                 kUnknownRosJoints,
+                                 kFrameRefused,
+                                 kTooManyFrames,
+                                 kFrameOfTwo,
+                                 kFrameMoved,
+                                 kFrameMissing,
+                                 kNoTransforms,
+                                 kFrameFound,
                                  kFramesLate,
                                  kFramesUnplaced,
                                  kFramesBack,

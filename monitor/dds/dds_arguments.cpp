@@ -1,0 +1,35 @@
+#include "monitor/dds/dds_arguments.hpp"
+
+#include <fmt/format.h>
+
+#include "monitor/app/options.hpp"
+
+namespace clearance {
+
+void DdsArguments::add_to(CommandLine& line, bool has_cell) {
+  line.add({
+      {"--domain", &domain,
+       fmt::format("DDS domain; otherwise {}that of ROS_DOMAIN_ID, or 0",
+                   has_cell ? "the cell's, " : ""),
+       whole_number_in(0, 232)},
+      {"--partition", &partition,
+       fmt::format("DDS partition; otherwise {}the default one", has_cell ? "the cell's, or " : ""),
+       expecting("a partition of at most 255 bytes without wildcards (* ? [)", is_partition)},
+      {"--interface", &interface,
+       fmt::format("Network interface; lo stays on this machine, default is the network of every "
+                   "program without a configuration; otherwise {}lo",
+                   has_cell ? "the cell's, or " : "")},
+      {"--peer",
+       &peers,
+       "Address of another machine; repeatable",
+       expecting("the address or the name of a machine", can_be_looked_up),
+       {.takes_all = true}},
+  });
+}
+
+Option topic_option(TopicKind kind, Topics& topics) {
+  const Topic& each = topic(kind);
+  return {fmt::format("--{}", each.key), &(topics.*each.name), "Topic name", shown()};
+}
+
+}  // namespace clearance
