@@ -17,7 +17,7 @@ namespace {
 
 constexpr const char* kFooter = R"(Exit status:
   0  done; a cell that was written has no errors
-  1  a file could not be read or written
+  1  a file could not be read or written, or errors do not explain what was measured
   2  wrong usage
   3  the cell that was written or read has errors (printed)
   4, 6  see 'send --help'
@@ -28,6 +28,7 @@ Examples:
   clearance-scene allow panda.urdf -o panda.srdf
   clearance-scene warehouse 1000 -o warehouse.yaml
   clearance-scene report warehouse.yaml
+  clearance-scene errors cell.yaml --joint left_elbow=1.2
   clearance-scene send --change 'attach: {object: part, to: left_hand}')";
 
 std::vector<Option> robot_options(RobotCellOptions& robot, const char* srdf) {
@@ -112,20 +113,41 @@ CommandLine report_line(ReportArguments& arguments) {
                       {"--json", &arguments.json, "Print JSON"}}};
 }
 
+CommandLine errors_line(ErrorsArguments& arguments) {
+  return {
+      .about =
+          "Print what the stated errors of a cell do in one posture, and by which joint, "
+          "base or mount; or whether they explain measured places",
+      .name = "errors",
+      .options = {
+          {"CELL", &arguments.cell, "The cell file (YAML)", required()},
+          {"--joint", &arguments.joints,
+           "NAME=POSITION, rad or m: where a joint is; repeatable. Others are at zero"},
+          {"--measured", &arguments.measured,
+           "CSV with joint positions and places that were measured: columns by the joints' "
+           "names (rad or m), and x, y, z (m, in the world). Exit status 1 if the stated errors "
+           "do not explain all",
+           needing("--link")},
+          {"--link", &arguments.link, "The link whose origin was there", needing("--measured")},
+      }};
+}
+
 int run(int argc, char** argv) {
   ImportArguments import;
   AllowArguments allow;
   WarehouseArguments warehouse;
+  ErrorsArguments errors;
   ReportArguments report;
   SendArguments send;
   CommandLine line{"Writes cell files, reports the models of objects, and changes running scenes.",
                    kFooter};
-  line.subcommands = {import_line(import), allow_line(allow), warehouse_line(warehouse),
-                      report_line(report), send_line(send)};
+  line.subcommands = {import_line(import), allow_line(allow),   warehouse_line(warehouse),
+                      report_line(report), errors_line(errors), send_line(send)};
   if (const auto done = parse(line, argc, argv)) return *done;
   if (line.chosen == "import") return import_robot(std::move(import));
   if (line.chosen == "allow") return allow_collisions(allow);
   if (line.chosen == "warehouse") return make_warehouse(warehouse);
+  if (line.chosen == "errors") return report_errors(errors);
   if (line.chosen == "report") return report_models(report);
   return send_changes(send);
 }

@@ -60,6 +60,10 @@ class StatedErrors {
   [[nodiscard]] std::uint32_t source_of(std::uint32_t object) const noexcept {
     return objects_[object].source;
   }
+  [[nodiscard]] std::uint32_t source_of_link(std::uint32_t robot,
+                                             std::uint32_t link) const noexcept {
+    return of_link_[robot][link];
+  }
   // The error of the object's shape, m.
   [[nodiscard]] double shape_error(std::uint32_t object) const noexcept {
     return objects_[object].shape;

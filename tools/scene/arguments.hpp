@@ -2,6 +2,7 @@
 #pragma once
 
 #include <string>
+#include <vector>
 
 #include "config/write/robot_cell.hpp"
 #include "config/write/warehouse_cell.hpp"
@@ -36,10 +37,17 @@ struct ReportArguments {
   bool json = false;
 };
 
+struct ErrorsArguments {
+  std::string cell;
+  std::vector<std::string> joints;  // NAME=POSITION
+  std::string measured, link;       // a table of places, and the link whose they are
+};
+
 // Each carries out one subcommand and returns the exit code.
 [[nodiscard]] int import_robot(ImportArguments arguments);
 [[nodiscard]] int allow_collisions(const AllowArguments& arguments);
 [[nodiscard]] int make_warehouse(const WarehouseArguments& arguments);
+[[nodiscard]] int report_errors(const ErrorsArguments& arguments);
 [[nodiscard]] int report_models(const ReportArguments& arguments);
 
 }  // namespace clearance

@@ -2,6 +2,7 @@
 #include <cstdio>
 #include <cstring>
 #include <fstream>
+#include <map>
 #include <string>
 #include <variant>
 #include <vector>
@@ -10,8 +11,10 @@
 #include "monitor/app/output_file.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
+#include "monitor/recording/given_joints.hpp"
 #include "tools/scene/allowed_collisions.hpp"
 #include "tools/scene/arguments.hpp"
+#include "tools/scene/error_report.hpp"
 #include "tools/scene/model_report.hpp"
 #include "tools/shared/progress_bar.hpp"
 
@@ -108,6 +111,29 @@ int allow_collisions(const AllowArguments& arguments) {
 int make_warehouse(const WarehouseArguments& arguments) {
   if (!can_create(kProgram, arguments.output, arguments.force)) return kFailed;
   return write_cell(warehouse_cell(arguments.warehouse), arguments.output);
+}
+
+int report_errors(const ErrorsArguments& arguments) {
+  const auto refuse = [](const std::string& fault) {
+    print(stderr, "clearance-scene: {}\n", fault);
+    return kFailed;
+  };
+  std::map<std::string, double> joints;
+  if (const std::string fault = read_joint_positions(arguments.joints, joints); !fault.empty())
+    return refuse(fault);
+  const auto cell = cell_or_errors(read_cell(arguments.cell, told_on_stderr()));
+  if (!cell) return kBadCell;
+  if (!arguments.measured.empty()) {
+    const auto report = measured_report(cell->scene, arguments.measured, arguments.link);
+    if (const auto* fault = std::get_if<ErrorReportFault>(&report)) return refuse(fault->text);
+    const MeasuredReport& found = std::get<MeasuredReport>(report);
+    print(stdout, "{}", found.text);
+    return found.explained ? kOk : kFailed;
+  }
+  const auto table = error_table(cell->scene, joints);
+  if (const auto* fault = std::get_if<ErrorReportFault>(&table)) return refuse(fault->text);
+  print(stdout, "{}", std::get<std::string>(table));
+  return kOk;
 }
 
 int report_models(const ReportArguments& arguments) {

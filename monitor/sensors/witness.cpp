@@ -1,0 +1,218 @@
+#include "monitor/sensors/witness.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstring>
+#include <limits>
+
+#include "monitor/bodies/directed_rounding.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr float kNowhere = std::numeric_limits<float>::infinity();
+
+// The depths between which a ray is inside of a body; empty if they do not ascend.
+struct Span {
+  double from = 0.0, to = kInfinity;
+  void cut(double at, double slope) noexcept {  // keeps slope * depth <= at
+    if (slope > 0.0) {
+      to = std::min(to, at / slope);
+    } else if (slope < 0.0) {
+      from = std::max(from, at / slope);
+    } else if (at < 0.0) {
+      to = -kInfinity;
+    }
+  }
+  [[nodiscard]] bool any() const noexcept { return from < to; }
+};
+
+// A ray leads from the camera's origin along (x, y, 1); its parameter is the depth.
+Span in_planes(const ConvexBody& body, const Vec3& origin, const Vec3& along,
+               double offset) noexcept {
+  Span span;
+  for (const Facet& facet : body.facets)
+    span.cut(facet.offset + offset - facet.normal.dot(origin), facet.normal.dot(along));
+  return span;
+}
+
+Span in_ball(const Vec3& centre, double radius, const Vec3& origin, const Vec3& along) noexcept {
+  const Vec3 from = origin - centre;
+  const double a = along.squaredNorm(), b = from.dot(along), c = from.squaredNorm() - radius * radius;
+  const double root = b * b - a * c;
+  if (!(radius > 0.0) || !(root > 0.0)) return {.to = -kInfinity};
+  return {.from = std::max(0.0, (-b - std::sqrt(root)) / a), .to = (-b + std::sqrt(root)) / a};
+}
+
+// Between two planes across the z-axis, and within a cylinder around it.
+Span in_cylinder(double low, double high, double radius, const Vec3& origin,
+                 const Vec3& along) noexcept {
+  Span span;
+  span.cut(high - origin.z(), along.z());
+  span.cut(origin.z() - low, -along.z());
+  const double a = along.x() * along.x() + along.y() * along.y();
+  const double b = origin.x() * along.x() + origin.y() * along.y();
+  const double c = origin.x() * origin.x() + origin.y() * origin.y() - radius * radius;
+  if (!(radius > 0.0) || (a == 0.0 && c > 0.0)) return {.to = -kInfinity};
+  if (a == 0.0) return span;
+  const double root = b * b - a * c;
+  if (!(root > 0.0)) return {.to = -kInfinity};
+  span.from = std::max(span.from, (-b - std::sqrt(root)) / a);
+  span.to = std::min(span.to, (-b + std::sqrt(root)) / a);
+  return span;
+}
+
+// Where a ray is inside of the body, grown by `offset` (negative: shrunk), or of a body that
+// contains it if it is grown, and is contained in it if it is shrunk. Origin and direction are in
+// the body's frame.
+Span inside(const ConvexBody& body, const Vec3& origin, const Vec3& along, double offset) noexcept {
+  if (body.is_curved()) {
+    const CurvedShape& shape = body.curved;
+    if (shape.kind == CurvedShape::Kind::kTruncatedCone) {
+      const auto& [low, high] = shape.discs;
+      const double radius = (offset > 0.0 ? std::max(low.radius, high.radius)
+                                          : std::min(low.radius, high.radius)) +
+                            body.radius + offset;
+      const double more = body.radius + offset;
+      return in_cylinder(low.height - more, high.height + more, radius, origin, along);
+    }
+    const Vec3& axes = shape.semi_axes;
+    return in_ball(Vec3::Zero(),
+                   (offset > 0.0 ? axes.maxCoeff() : axes.minCoeff()) + body.radius + offset,
+                   origin, along);
+  }
+  if (!body.is_thin()) return in_planes(body, origin, along, body.radius + offset);
+  Span span = in_ball(body.anchors.front(), body.radius + offset, origin, along);
+  if (body.anchors.size() < 2) return span;
+  // A capsule is a ball that moves from one end to the other; a few of them suffice.
+  constexpr int kBalls = 8;
+  for (int i = 1; i <= kBalls; ++i) {
+    const Vec3 centre =
+        body.anchors[0] + (static_cast<double>(i) / kBalls) * (body.anchors[1] - body.anchors[0]);
+    const Span ball = in_ball(centre, body.radius + offset, origin, along);
+    if (!ball.any()) continue;
+    span = span.any() ? Span{std::min(span.from, ball.from), std::max(span.to, ball.to)} : ball;
+  }
+  return span;
+}
+
+// The depth of a pixel, m; NaN: missing.
+double depth_at(const DepthImage& image, std::uint32_t column, std::uint32_t row) noexcept {
+  const std::byte* const line = image.bytes.data() + row * image.step;
+  if (image.format == DepthImage::Format::kMillimetres16) {
+    std::uint16_t value = 0;
+    std::memcpy(&value, line + column * sizeof(value), sizeof(value));
+    return value == 0 ? std::numeric_limits<double>::quiet_NaN() : 1e-3 * value;
+  }
+  float value = 0.0F;
+  std::memcpy(&value, line + column * sizeof(value), sizeof(value));
+  return value;
+}
+
+}  // namespace
+
+Witness::Witness(const Scene& scene)
+    : scene_(scene), errors_(scene), surest_(kRays), nearest_(kRays), rays_(scene.robots.size()) {}
+
+// Only the rays in the rectangle around the part's sphere can meet it.
+void Witness::meet(const Part& part, const RelativePose& camera_from_part, double shrunk_by,
+                   const PinholeCamera& camera) {
+  const Mat3& turn = camera_from_part.rotation;
+  const double radius = part.shape.bounding_radius + part.shape.radius + shrunk_by;
+  const Vec3& centre = camera_from_part.translation;
+  const double near = centre.z() - radius;
+  if (!(near > 0.0)) return;  // beside or behind the camera: it says nothing
+  const Vec3 origin = -(turn.transpose() * centre);
+  const auto range = [&](double at, double focal, double middle, std::uint32_t count) {
+    const double low = std::min((at - radius) / near, (at - radius) / (near + 2.0 * radius));
+    const double high = std::max((at + radius) / near, (at + radius) / (near + 2.0 * radius));
+    const auto ray = [&](double tangent) {
+      const double index = (focal * tangent + middle) / grid_.step;
+      return static_cast<std::uint32_t>(std::clamp(index, 0.0, static_cast<double>(count)));
+    };
+    return std::pair(ray(low), std::min(count, ray(high) + 1));
+  };
+  const auto [left, right] = range(centre.x(), camera.fx, camera.cx, grid_.columns);
+  const auto [top, bottom] = range(centre.y(), camera.fy, camera.cy, grid_.rows);
+  for (std::uint32_t row = top; row < bottom; ++row) {
+    for (std::uint32_t column = left; column < right; ++column) {
+      const Vec3 ray((column * grid_.step - camera.cx) / camera.fx,
+                     (row * grid_.step - camera.cy) / camera.fy, 1.0);
+      const Vec3 along = turn.transpose() * ray;
+      const std::size_t index = row * grid_.columns + column;
+      const Span grown = inside(part.shape, origin, along, shrunk_by);
+      if (!grown.any()) continue;
+      nearest_[index] = std::min(nearest_[index], static_cast<float>(grown.from));
+      const Span shrunk = inside(part.shape, origin, along, -shrunk_by);
+      if (shrunk.any())
+        surest_[index] = std::min(surest_[index], static_cast<float>(shrunk.from));
+    }
+  }
+}
+
+void Witness::count(std::uint32_t robot, const Sensor& sensor, const PinholeCamera& camera,
+                    const DepthImage& image) noexcept {
+  const DepthError error{sensor.error_constant, sensor.error_quadratic};
+  RaysOfRobot& rays = rays_[robot];
+  for (std::uint32_t row = 0; row < grid_.rows; ++row) {
+    for (std::uint32_t column = 0; column < grid_.columns; ++column) {
+      const std::size_t index = row * grid_.columns + column;
+      const double surest = surest_[index];
+      if (!(surest >= sensor.least_depth && surest <= sensor.greatest_depth)) continue;
+      double depth = depth_at(image, column * grid_.step, row * grid_.step);
+      if (!(depth >= sensor.least_depth && depth <= sensor.greatest_depth)) continue;
+      const double by = error.at(depth);
+      if (depth > surest + by) {
+        ++rays.through;
+      } else if (depth >= nearest_[index] - by) {
+        ++rays.agreeing;
+      }
+    }
+  }
+  static_cast<void>(camera);
+}
+
+RobotsSeen Witness::judge(const Sensor& sensor, const PinholeCamera& camera,
+                          const DepthImage& image, const PastPose& place,
+                          const PostureHistory& postures) noexcept {
+  grid_.step = 1;
+  const auto rays_of = [&](std::uint32_t pixels) { return (pixels + grid_.step - 1) / grid_.step; };
+  while (static_cast<std::uint64_t>(rays_of(image.width)) * rays_of(image.height) > kRays)
+    ++grid_.step;
+  grid_.columns = rays_of(image.width);
+  grid_.rows = rays_of(image.height);
+
+  RobotsSeen seen;
+  const auto robots = std::min<std::size_t>(scene_.robots.size(), kMostRobotsSeen);
+  for (std::uint32_t r = 0; r < robots; ++r) {
+    const Robot& robot = scene_.robots[r];
+    rays_[r] = {};
+    if (robot.is_attached) continue;
+    std::ranges::fill(surest_, kNowhere);
+    std::ranges::fill(nearest_, kNowhere);
+    for (std::uint32_t link = 0; link < robot.links.size(); ++link) {
+      const std::uint32_t i = robot.links[link].object;
+      if (i == RobotLink::kNoObject) continue;
+      const PastPose past = postures.link(r, link);
+      if (!past.known) continue;
+      const Object& object = scene_.objects[i];
+      for (const Part& part : object.parts) {
+        const double reach = part.object_from_part.position.norm() + part.shape.bounding_radius +
+                             part.shape.radius;
+        const double error = rounded_up(place.error(sensor.extent()) + past.error(reach) +
+                                        object.mesh_error + object.shape_error +
+                                        errors_.largest(i, sensor.object));
+        const Pose world_from_part = compose(past.world_from_body, part.object_from_part);
+        meet(part, relative_pose(place.world_from_body, world_from_part), error, camera);
+      }
+    }
+    count(r, sensor, camera, image);
+    const std::uint32_t met = rays_[r].agreeing + rays_[r].through;
+    if (met < kLeastRays) continue;
+    const bool is_through = rays_[r].through > sensor.witness_share * met;
+    (is_through ? seen.not_there : seen.there) |= std::uint64_t{1} << r;
+  }
+  return seen;
+}
+
+}  // namespace clearance
