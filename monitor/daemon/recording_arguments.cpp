@@ -73,9 +73,12 @@ void RecordingArguments::add_events_to(CLI::App& app, const std::string& prefix)
       ->capture_default_str()
       ->needs(around)
       ->group(kRecording);
-  add_amount(app, prefix + "keep-mb", keep_mb,
-             "Delete the oldest NAME-TIME.mcap while all of them have more than this, MB; 0: never")
-      ->needs(around);
+  app.add_option(prefix + "keep-mb", keep_mb,
+                 "Delete the oldest NAME-TIME.mcap while all of them have more than this, MB; 0: "
+                 "never. A tenth of the free disk where it is not given")
+      ->check(number_from_zero())
+      ->needs(around)
+      ->group(kRecording);
   add_amount(app, prefix + "keep-h", keep_h,
              "Delete each NAME-TIME.mcap that is older than this, h; 0: never")
       ->needs(around);
@@ -110,10 +113,12 @@ RecordingOptions RecordingArguments::options(bool overwrite) const {
       .ticks_every = ticks_every,
       .events = {.around_ns = static_cast<std::int64_t>(std::ceil(std::min(around_s * 1e9, kMost))),
                  .ring_bytes = static_cast<std::size_t>(ring_mb * 1e6),
-                 .keep_bytes =
-                     static_cast<std::uint64_t>(std::ceil(std::min(keep_mb * 1e6, kMost))),
+                 .keep_bytes = std::nullopt,
                  .keep_ns = static_cast<std::int64_t>(std::ceil(std::min(keep_h * 3.6e12, kMost)))},
       .clouds_every = clouds_every};
+  if (keep_mb)
+    options.events.keep_bytes =
+        static_cast<std::uint64_t>(std::ceil(std::min(*keep_mb * 1e6, kMost)));
   for (const Topic& topic : kRecordedTopics) {
     if (std::ranges::find(without, topic.key) != without.end()) options.left_out.insert(topic.kind);
   }
