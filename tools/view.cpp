@@ -115,7 +115,8 @@ void add_options(CLI::App& app, Arguments& arguments) {
       ->needs(screenshot)
       ->group(kPictures);
   app.add_option("--query", arguments.query,
-                 "The query of the page's address, which selects and styles, e.g. 'theme=light'")
+                 "The query of the page's address, with the words of a link, e.g. "
+                 "'robots=looks&theme=light'")
       ->needs(screenshot)
       ->group(kPictures);
   app.add_option("--width", arguments.width, "Pixels")
@@ -236,7 +237,7 @@ class Drawn {
     if (cell_ == source_.cell()) return;
     visuals_.reset();
     cell_ = source_.cell();
-    scene_ = resource("application/json", view::scene_json(*cell_));
+    scene_ = resource("application/json", view::scene_json(*cell_, view::link_colours(*cell_)));
     visuals_.emplace(*cell_);
   }
 
