@@ -54,6 +54,8 @@ struct PairReport {
   // also deviate by its unobserved motion. The bound equals `lower` for a pair that was not known
   // at the last tick. It is -infinity for an unknown pair, and after a discontinuity of 10 km.
   double swept_lower = 0.0;
+  // The closest points, world. Of objects that overlap: the point of each that lies deepest in the
+  // other along the normal, as in DistanceResult.
   Vec3 witness_a = Vec3::Zero(), witness_b = Vec3::Zero();
   Vec3 normal = Vec3::Zero();  // unit, from A to B; NaN if no translation separates them
   // Positive when approaching; includes the rotation at the witness points. It is NaN without a

@@ -7,6 +7,7 @@
 #include <sstream>
 #include <string>
 
+#include "config/mesh/mesh_codes.hpp"
 #include "monitor/app/all_log_lines.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/intake/camera_messages.hpp"
@@ -36,6 +37,7 @@ std::set<std::string> codes_of_news() {
 std::set<std::string> codes_of_the_log() {
   std::set<std::string> codes = codes_of_news();
   std::apply([&](const auto&... line) { (codes.emplace(line.code), ...); }, lines::kAll);
+  codes.insert(kMeshCodes.begin(), kMeshCodes.end());
   return codes;
 }
 
