@@ -111,7 +111,9 @@ void add_options(CommandLine& line, Arguments& arguments) {
        number_from_zero(),
        {.takes_all = true, .needs = picture.needs, .group = picture.group}},
       {"--query", &arguments.query,
-       "The query of the page's address, which selects and styles, e.g. 'theme=light'", picture},
+       "The query of the page's address, with the words of a link, e.g. "
+       "'robots=looks&theme=light'",
+       picture},
       {"--width", &arguments.width, "Pixels", whole_number_in(320, 7680), shown_of_picture},
       {"--height", &arguments.height, "Pixels", whole_number_in(240, 4320), shown_of_picture},
       force_option(arguments.force),
@@ -224,7 +226,7 @@ class Drawn {
     if (cell_ == source_.cell()) return;
     visuals_.reset();
     cell_ = source_.cell();
-    scene_ = resource("application/json", view::scene_json(*cell_));
+    scene_ = resource("application/json", view::scene_json(*cell_, view::link_colours(*cell_)));
     visuals_.emplace(*cell_);
   }
 

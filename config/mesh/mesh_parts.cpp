@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "config/mesh/file_lock.hpp"
+#include "config/mesh/mesh_codes.hpp"
 #include "config/mesh/parts_cover.hpp"
 #include "config/text/sentences.hpp"
 
@@ -165,8 +166,8 @@ std::variant<ConvexParts, MeshRefusal> MeshLibrary::split(const MeshUse& use,
   say(fmt::format("{}: {}, {:.1f} mm, in {:.1f} s; {}", name, counted(parts.parts.size(), "part"),
                   1e3 * parts.error, took.count(),
                   kept.empty() ? fmt::format("warning: '{}' cannot be written, so they will be "
-                                             "made again at the next start",
-                                             cache_.folder().string())
+                                             "made again at the next start [{}]",
+                                             cache_.folder().string(), kPartsNotKept)
                                : fmt::format("kept in '{}'", kept.string())));
   return std::move(parts);
 }
@@ -181,8 +182,8 @@ std::optional<MeshParts> MeshLibrary::kept(const MeshUse& use, const std::string
   if (splits_) {
     say(
         fmt::format("warning: {}: the parts that are kept of it in '{}' do not contain it; they "
-                    "are made again",
-                    path_of(use).filename().string(), cache_.folder().string()));
+                    "are made again [{}]",
+                    path_of(use).filename().string(), cache_.folder().string(), kPartsAgain));
   }
   return std::nullopt;
 }
@@ -220,13 +221,14 @@ void MeshLibrary::warn_of_error(const MeshUse& use, const MeshParts& parts) cons
           : fmt::format("max_parts (now {}) or tolerance", use.limits.max_parts);
   say(fmt::format(
       "warning: {}: its {} reach{} {:.1f} mm beyond it, more than the tolerance of {:g} "
-      "mm: raise {} in {}",
+      "mm: raise {} in {} [{}]",
       path_of(use).filename().string(), counted(parts.shapes.size(), "part"),
       parts.shapes.size() == 1 ? "es" : "", 1e3 * parts.error, 1e3 * use.limits.tolerance, limits,
       advice_ == Advice::kCell
           ? "the cell"
           : "a cell: 'clearance-scene import URDF --joints -o CELL.yaml' writes the one of this "
-            "robot, with --max-parts and --mesh-tolerance, and 'clearanced CELL.yaml' runs it"));
+            "robot, with --max-parts and --mesh-tolerance, and 'clearanced CELL.yaml' runs it",
+      kMeshFarFromParts));
 }
 
 // Keeps the refusal of a mesh that was read ahead until the command that wants it is done.

@@ -48,12 +48,15 @@ std::optional<std::string> MotionSearch::fault(const Question& question) const {
       !(question.scaling_tolerance > 0.0)) {
     return "a tolerance is not above 0";
   }
+  const auto wrong = [](double margin) -> std::optional<std::string> {
+    if (margin >= 0.0 && std::isfinite(margin)) return std::nullopt;
+    return "a margin is " + std::to_string(margin) + "; expected a finite number from 0 on, m";
+  };
   for (const double margin : question.margins) {
-    if (!(margin >= 0.0) || !std::isfinite(margin)) return "a margin is not a number from 0 on";
+    if (auto fault = wrong(margin)) return fault;
   }
   for (const MarginBetween& of : question.margins_between) {
-    if (!(of.margin >= 0.0) || !std::isfinite(of.margin))
-      return "a margin is not a number from 0 on";
+    if (auto fault = wrong(of.margin)) return fault;
     if (!pairs_between(scene_, of.a, of.b).empty()) continue;
     return of.b.empty() ? "the cell has no zone \"" + of.a + "\" with a watched pair"
                         : "the cell watches no pair between \"" + of.a + "\" and \"" + of.b + "\"";

@@ -1,5 +1,6 @@
 #include "monitor/ask/named_answer.hpp"
 
+#include <cstddef>
 #include <cstdint>
 
 #include "monitor/ask/asker.hpp"
@@ -21,8 +22,14 @@ void name_answer(const Answer& answer, const Question& question, const Scene& sc
       result.point_on_second = answer.point_on_second;
     }
   }
-  for (const MarginAnswer& margin : answer.margins) {
+  for (std::size_t i = 0; i < answer.margins.size(); ++i) {
+    const MarginAnswer& margin = answer.margins[i];
     MarginResult& out = result.margins.emplace_back();
+    if (i >= question.margins.size()) {
+      const MarginBetween& of = question.margins_between[i - question.margins.size()];
+      out.a = of.a;
+      out.b = of.b;
+    }
     out.margin = margin.margin;
     out.verdict = margin.verdict;
     out.above_until = margin.verdict == Verdict::kFree ? end : margin.above_until;

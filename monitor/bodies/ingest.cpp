@@ -87,6 +87,13 @@ void count(Reject cause, InputRecord* input, Inputs& inputs) noexcept {
   if (input != nullptr) ++input->rejected[index];
 }
 
+RefusedValue& last_refused(const PoseSample& sample, Inputs& inputs) noexcept {
+  return inputs.refused_poses[sample.object];
+}
+RefusedValue& last_refused(const JointSample& sample, Inputs& inputs) noexcept {
+  return inputs.refused_positions[sample.variable];
+}
+
 // Fetches what take() reads of an object at rest.
 void fetch(const PoseSample& sample, const Inputs& inputs) noexcept {
   if (sample.object >= inputs.objects.size()) return;
@@ -101,7 +108,10 @@ void take_all(std::span<const Sample> samples, const Scene& scene, Inputs& input
   for (std::size_t i = 0; i < samples.size(); ++i) {
     if (i + kAhead < samples.size()) fetch(samples[i + kAhead], inputs);
     if (const auto cause = take(samples[i], scene, inputs)) {
-      count(*cause, record_of(samples[i], inputs), inputs);
+      InputRecord* const input = record_of(samples[i], inputs);
+      count(*cause, input, inputs);
+      if (input != nullptr)
+        last_refused(samples[i], inputs) = {*cause, samples[i], inputs.time.now_ns};
     }
   }
 }
@@ -126,7 +136,9 @@ Inputs initial_inputs(const Scene& scene) {
                 .stamps = PoseStamps(scene.objects.size()),
                 .robots = RobotInputs(scene),
                 .sensors = std::vector<CarriedSensor>(scene.sensors.size()),
-                .sources = {}};
+                .sources = {},
+                .refused_poses = std::vector<RefusedValue>(scene.objects.size()),
+                .refused_positions = std::vector<RefusedValue>(scene.variables.size())};
   inputs.objects.reserve(scene.objects.size());
   for (const Object& object : scene.objects) {
     inputs.objects.push_back(initial_state(object));

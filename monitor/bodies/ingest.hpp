@@ -13,6 +13,7 @@
 #include "monitor/bodies/robot_inputs.hpp"
 #include "monitor/bodies/tracked_object.hpp"
 #include "monitor/bodies/visit_times.hpp"
+#include "monitor/inputs/refused_value.hpp"
 #include "monitor/inputs/source_clock.hpp"
 #include "monitor/inputs/source_numbers.hpp"
 
@@ -37,6 +38,8 @@ struct Inputs {
   std::vector<CarriedSensor> sensors;
   std::array<SourceClock, kMaxSources> sources;    // indexed by PoseSample::source
   std::array<std::uint64_t, kRejects> rejected{};  // refused samples, by cause
+  // For people: by object and by joint variable. No tick reads them, and no partner has them.
+  std::vector<RefusedValue> refused_poses, refused_positions;
 };
 
 // The state before the first tick.

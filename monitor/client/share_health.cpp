@@ -95,10 +95,11 @@ void join_sources(Views views, Message& out) {
 
 void write_rejected(const HealthCounts::Rejected& counts, Message& out) {
   reserve_sequence(out.rejected, std::min<std::size_t>(counts.size(), 4096));
-  for (const auto& [what, count] : counts) {
+  for (const auto& [what, refused] : counts) {
     if (out.rejected._length == out.rejected._maximum) return;
-    out.rejected._buffer[out.rejected._length++] = {dds_string_dup(what.first.c_str()),
-                                                    dds_string_dup(what.second.c_str()), count};
+    out.rejected._buffer[out.rejected._length++] = {
+        dds_string_dup(what.first.c_str()), dds_string_dup(what.second.c_str()), refused.count,
+        dds_string_dup(refused.last.c_str())};
   }
 }
 
@@ -151,14 +152,14 @@ void HealthCounts::take(const clearance_msg_Health& health) {
   for (auto clearance_msg_PartnerHealth::*const sum : kPartnerSums)
     now.all.push_back(health.partner.*sum);
   for (const clearance_msg_RejectCount& entry : list(health.rejected))
-    now.rejected[{entry.object, entry.cause}] += entry.count;
+    now.rejected[{entry.object, entry.cause}].add({entry.count, entry.last});
   if (told_.all.empty()) {
     told_ = now;
   } else if (health.daemon == daemon_) {
     for (std::size_t i = 0; i < now.all.size(); ++i)
       told_.all[i] += increase(last_.all[i], now.all[i]);
-    for (const auto& [what, count] : now.rejected)
-      told_.rejected[what] += increase(last_.rejected[what], count);
+    for (const auto& [what, refused] : now.rejected)
+      told_.rejected[what].add({increase(last_.rejected[what].count, refused.count), refused.last});
   }
   daemon_ = health.daemon;
   last_ = std::move(now);
@@ -193,7 +194,7 @@ void join_health(Views views, std::span<const HealthCounts* const> counts,
   HealthCounts::Rejected rejected;
   for (const HealthCounts* of_share : counts) {
     of_share->add_to(out);
-    for (const auto& [what, count] : of_share->rejected()) rejected[what] += count;
+    for (const auto& [what, refused] : of_share->rejected()) rejected[what].add(refused);
   }
   write_rejected(rejected, out);
   join_ages(views, &Message::inputs, &clearance_msg_InputAge::object, out);

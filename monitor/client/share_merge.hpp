@@ -105,7 +105,15 @@ class HealthCounts {
  public:
   void take(const clearance_msg_Health& health);
   void add_to(clearance_msg_Health& sums) const;
-  using Rejected = std::map<std::pair<std::string, std::string>, std::uint64_t>;  // object, cause
+  struct Refused {
+    std::uint64_t count = 0;
+    std::string last;  // RejectCount::last, where one is known
+    void add(const Refused& more) {
+      count += more.count;
+      if (!more.last.empty()) last = more.last;
+    }
+  };
+  using Rejected = std::map<std::pair<std::string, std::string>, Refused>;  // object, cause
   [[nodiscard]] const Rejected& rejected() const noexcept { return told_.rejected; }
 
  private:

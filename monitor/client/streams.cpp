@@ -82,8 +82,8 @@ std::string part_name(const clearance_msg_Catalogue& names, std::uint32_t object
                       std::uint32_t part) {
   if (object >= names.objects._length) return fmt::format("object {}", object);
   const clearance_msg_CatalogueObject& found = names.objects._buffer[object];
-  if (found.parts._length < 2 || part >= found.parts._length) return found.name;
-  return fmt::format("{}.{}", found.name, found.parts._buffer[part]);
+  if (part >= found.parts._length) return found.name;
+  return body_name(found.name, found.parts._length, found.parts._buffer[part]);
 }
 
 }  // namespace

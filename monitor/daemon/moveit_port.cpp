@@ -41,7 +41,10 @@ void MoveItPort::close() {
 MadeCommand MoveItPort::command(const SceneTurns::Message& message, std::uint64_t identity) {
   MadeCommand queued;
   queued.sender = "moveit";
-  queued.put_off = [this] { keeper_.take_back(); };
+  queued.put_off = [this] {
+    keeper_.take_back();
+    current_ = 0;
+  };
   queued.bytes = message->cdr.size();
   queued.make = [this, message, identity](const Cell& cell, const AskPose& pose) {
     if (identity != 0 && !begins(identity, cell.scene.revision)) return Command{};

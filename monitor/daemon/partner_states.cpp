@@ -107,7 +107,7 @@ void PartnerStates::join(const PartnerStateView& state) {
 
 // By its turn this daemon may lead, or have the cell.
 void PartnerStates::take_cell(std::string text, std::uint64_t revision) {
-  MadeCommand made;
+  MadeCommand made{.sender = "partner"};
   made.bytes = text.size();
   made.make = [this, revision, text = std::move(text)](const Cell& cell, const AskPose&) {
     const bool has_it = cell.scene.revision == revision;

@@ -6,12 +6,14 @@
 
 #include <algorithm>
 #include <chrono>
+#include <cmath>
 #include <span>
 
 #include "monitor/app/log_line.hpp"
 #include "monitor/files/build_info.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/publish/health.hpp"
+#include "monitor/recording/event_files.hpp"
 
 namespace clearance {
 namespace {
@@ -31,6 +33,20 @@ std::size_t slots(std::size_t bytes_a_slot) {
   return std::clamp(kQueueBytes / std::max<std::size_t>(bytes_a_slot, 1), kFewestSlots, kMostSlots);
 }
 
+// Reports of every tick, and a pose or position of everything that moves, before compression.
+double bytes_a_second(const Scene& scene, const RecordingOptions& options) {
+  const auto published = std::ranges::count_if(scene.pairs, &ObjectPair::publish);
+  const auto moving =
+      std::ranges::count_if(scene.objects, [](const Object& object) { return !object.fixed; });
+  const double reports = static_cast<double>(sizeof(clearance_msg_Distances)) +
+                         static_cast<double>(sizeof(clearance_msg_PairDistance)) *
+                             static_cast<double>(published) /
+                             static_cast<double>(options.pairs_every);
+  const double inputs =
+      static_cast<double>(sizeof(clearance_msg_ObjectPose)) * static_cast<double>(moving);
+  return (reports + inputs) * scene.rate_hz;
+}
+
 // A slot of a report holds at most all pairs, a slot of a batch as many poses as the reader takes.
 ReportQueueOptions queue_options(const Cell& cell) {
   const Scene& scene = cell.scene;
@@ -41,6 +57,23 @@ ReportQueueOptions queue_options(const Cell& cell) {
           .inputs = slots(sizeof(PoseSample) * samples + sizeof(JointSample) * joints),
           .samples_a_batch = samples,
           .joints_a_batch = joints};
+}
+
+// The cap is known from here on, so that the log and the files have the same one.
+RecordingOptions capped(RecordingOptions options, const std::filesystem::path& file,
+                        const Cell& cell) {
+  EventOptions& events = options.events;
+  if (!events.any()) return options;
+  const bool is_stated = events.keep_bytes.has_value();
+  events.keep_bytes = event_cap(file, events);
+  const std::string most =
+      *events.keep_bytes == 0
+          ? "any size, as stated,"
+          : fmt::format("{:.0f} MB{}", std::ceil(1e-6 * static_cast<double>(*events.keep_bytes)),
+                        is_stated ? "" : ", a tenth of the free disk,");
+  log_line(lines::kEventsCapped, (file.parent_path() / file.stem()).string(), most,
+           1e-6 * bytes_a_second(cell.scene, options));
+  return options;
 }
 
 }  // namespace
@@ -58,7 +91,7 @@ Recording::Recording(const std::filesystem::path& file, const RecordingOptions& 
       poses_(poses),
       built_(poses.keep_frames()),
       health_(health),
-      recorder_(file, *cell, SystemClock().realtime_ns(), options) {
+      recorder_(file, *cell, SystemClock().realtime_ns(), capped(options, file, *cell)) {
   if (!recorder_.ok()) throw RecordError(fmt::format("recording: {}", recorder_.error()));
   tell_of_missing_files();
   health_.begin(file_);

@@ -66,9 +66,12 @@ void RecordingArguments::add_events_to(CommandLine& line, const std::string& pre
        number_from_zero(), with_default({}, {prefix + "roll-mb", prefix + "roll-s"})},
       {prefix + "ring-mb", &ring_mb, "Memory for the time before an event, MB; it limits that time",
        number_in(1.0, 1e6), with_default(around)},
-      {prefix + "keep-mb", &keep_mb,
-       "Delete the oldest NAME-TIME.mcap while all of them have more than this, MB; 0: never",
-       number_from_zero(), with_default(around)},
+      {prefix + "keep-mb",
+       &keep_mb,
+       "Delete the oldest NAME-TIME.mcap while all of them have more than this, MB; 0: never. A "
+       "tenth of the free disk where it is not given",
+       number_from_zero(),
+       {.needs = around, .group = "Recording"}},
       {prefix + "keep-h", &keep_h,
        "Delete each NAME-TIME.mcap that is older than this, h; 0: never", number_from_zero(),
        with_default(around)},
@@ -96,10 +99,12 @@ RecordingOptions RecordingArguments::options(bool overwrite) const {
       .ticks_every = ticks_every,
       .events = {.around_ns = static_cast<std::int64_t>(std::ceil(std::min(around_s * 1e9, kMost))),
                  .ring_bytes = static_cast<std::size_t>(ring_mb * 1e6),
-                 .keep_bytes =
-                     static_cast<std::uint64_t>(std::ceil(std::min(keep_mb * 1e6, kMost))),
+                 .keep_bytes = std::nullopt,
                  .keep_ns = static_cast<std::int64_t>(std::ceil(std::min(keep_h * 3.6e12, kMost)))},
       .clouds_every = clouds_every};
+  if (keep_mb)
+    options.events.keep_bytes =
+        static_cast<std::uint64_t>(std::ceil(std::min(*keep_mb * 1e6, kMost)));
   for (const Topic& topic : kRecordedTopics) {
     if (std::ranges::find(without, topic.key) != without.end()) options.left_out.insert(topic.kind);
   }

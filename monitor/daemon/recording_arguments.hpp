@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -19,7 +20,8 @@ struct RecordingArguments {
   // `prefix` begins the names of the options: "--record-" or "--".
   void add_to(CommandLine& line, const std::string& prefix);
 
-  double around_s = 0.0, ring_mb = 256.0, keep_mb = 0.0, keep_h = 0.0;
+  double around_s = 0.0, ring_mb = 256.0, keep_h = 0.0;
+  std::optional<double> keep_mb;
   std::uint64_t ticks_every = 1, clouds_every = 1;
 
   // Adds what only a recorder that sees every tick can do: events, and ticks that are left out.

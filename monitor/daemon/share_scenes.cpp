@@ -141,11 +141,11 @@ void ShareScenes::take_over(const Heard& heard) {
 // By its turn this daemon may have the scene.
 MadeCommand ShareScenes::command() {
   const auto doing = std::make_shared<Wanted>();
-  MadeCommand made;
+  MadeCommand made{.sender = "shares"};
   made.make = [this, doing](const Cell& cell, const AskPose&) {
     const std::lock_guard lock(mutex_);
     is_queued_ = false;
-    *doing = std::move(wanted_);
+    *doing = wanted_;
     const bool has_it = cell.scene.revision == doing->revision;
     return has_it || !actions_.changes() ? Command{}
                                          : Command{.changes = {ReplaceCell{doing->text}}};

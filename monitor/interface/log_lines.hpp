@@ -68,6 +68,10 @@ inline constexpr LogLine<Text> kRecordingWithoutFiles{
 inline constexpr LogLine<Text> kRecordingContinues{"recording-continues", kInfo,
                                                    "the recording continues in {}"};
 inline constexpr LogLine<Text> kEventRecorded{"event-recorded", kInfo, "recording an event to {}"};
+inline constexpr LogLine<Text, Text, double> kEventsCapped{
+    "events-capped", kInfo,
+    "files of events, {}-TIME.mcap, may have {} in all; while one is written, it grows by up to "
+    "{:.1f} MB/s, and by what cameras send"};
 inline constexpr LogLine<Text> kRecordingStopped{"recording-stopped", kError,
                                                  "the recording stopped: {}"};
 inline constexpr LogLine<Text, Text> kDiskTooSlow{

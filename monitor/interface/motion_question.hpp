@@ -51,6 +51,7 @@ struct MarginResult {
   double above_until = 0.0;  // s
   double below_at = std::numeric_limits<double>::quiet_NaN();
   std::string first = {}, second = {};
+  std::string a = {}, b = {};  // of the MarginBetween that it is of; empty: of all pairs
 };
 
 // A ProfilePoint with names.
@@ -95,10 +96,13 @@ struct QuestionResult {
   std::string start_joint = {};
 
   [[nodiscard]] bool done() const noexcept { return status == QuestionStatus::kDone; }
-  // True if the whole motion certainly keeps this margin, which the question had, m.
-  [[nodiscard]] bool is_free(double margin) const noexcept {
+  // True if the whole motion certainly keeps this margin, which the question had, m: of all pairs,
+  // or of those that its MarginBetween names by `a` and `b`.
+  [[nodiscard]] bool is_free(double margin, std::string_view a = {},
+                             std::string_view b = {}) const noexcept {
     for (const MarginResult& each : margins) {
-      if (each.margin == margin) return done() && each.verdict == Verdict::kFree;
+      if (each.margin == margin && each.a == a && each.b == b)
+        return done() && each.verdict == Verdict::kFree;
     }
     return false;
   }

@@ -4,8 +4,8 @@ namespace clearance {
 namespace {
 
 std::string part_name(const Object& object, std::uint32_t part) {
-  if (object.parts.size() < 2 || part >= object.parts.size()) return object.name;
-  return object.name + "." + object.parts[part].name;
+  if (part >= object.parts.size()) return object.name;
+  return body_name(object.name, object.parts.size(), object.parts[part].name);
 }
 
 }  // namespace

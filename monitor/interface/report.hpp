@@ -58,6 +58,8 @@ struct PairReport {
   // cell states (config/KEYS.md). `distance`, witnesses and normal are those of the model. NaN if
   // the pair is unknown.
   double model_error = 0.0;
+  // The closest points, world. Of objects that overlap: the point of each that lies deepest in the
+  // other along the normal, as in DistanceResult.
   Vec3 witness_a = Vec3::Zero(), witness_b = Vec3::Zero();
   Vec3 normal = Vec3::Zero();  // unit, from A to B; NaN if no translation separates them
   // Positive when approaching; includes the rotation at the witness points. It is NaN without a

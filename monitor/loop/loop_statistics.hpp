@@ -50,7 +50,9 @@ struct LoopStatistics : RunStatistics {
       : rejected(scene.objects.size()),
         ages(scene.objects.size()),
         rejected_joints(scene.variables.size()),
-        joint_ages(scene.variables.size()) {}
+        joint_ages(scene.variables.size()),
+        refused_poses(scene.objects.size()),
+        refused_positions(scene.variables.size()) {}
 
   // Continues the counts of the scene before a change.
   void continue_from(const RunStatistics& before) noexcept { RunStatistics::operator=(before); }
@@ -60,6 +62,8 @@ struct LoopStatistics : RunStatistics {
   std::vector<InputAge> ages;                                        // per object
   std::vector<std::array<std::uint64_t, kRejects>> rejected_joints;  // per variable of a joint
   std::vector<InputAge> joint_ages;                                  // per variable of a joint
+  // The last ones, per object and per variable.
+  std::vector<RefusedValue> refused_poses, refused_positions;
 };
 
 }  // namespace clearance

@@ -241,6 +241,8 @@ void TickLoop::hand_over_statistics() noexcept {
     statistics_.rejected_joints[variable] = monitor.rejected_joints(variable);
     statistics_.joint_ages[variable] = monitor.joint_age(variable);
   }
+  std::ranges::copy(monitor.refused_poses(), statistics_.refused_poses.begin());
+  std::ranges::copy(monitor.refused_positions(), statistics_.refused_positions.begin());
   for (std::uint32_t i = 0; i < kMaxSources; ++i)
     statistics_.sources[i] = state_.ids().sources().name(i);
   statistics_.clock_steps = time_.steps();

@@ -61,7 +61,7 @@ class FromWire {
   }
   void take(const std::string&, bool from, bool& to) const { to = from; }
   void take(const std::string& path, double from, double& to) const {
-    if (!std::isfinite(from)) return refuse(path, std::string(kNotFinite));
+    if (!std::isfinite(from)) return refuse(path, not_finite(from));
     to = from;
   }
   void take(const std::string& path, std::uint8_t from, SetPair::Rule& to) const {

@@ -26,7 +26,7 @@ class Reader {
     to = text;
   }
   void number(const std::string& path, double from, double& to) {
-    if (!std::isfinite(from)) return refuse(path, std::string(kNotFinite));
+    if (!std::isfinite(from)) return refuse(path, not_finite(from));
     to = from;
   }
   // The same as number(), but 0 leaves what is there.
@@ -77,7 +77,7 @@ class Reader {
     }
     for (std::uint32_t i = 0; i < from._length; ++i) {
       if (!std::isfinite(from._buffer[i]))
-        return refuse(fmt::format("{}[{}]", path, i), std::string(kNotFinite));
+        return refuse(fmt::format("{}[{}]", path, i), not_finite(from._buffer[i]));
     }
     if (from._length > 0) to.assign(from._buffer, from._buffer + from._length);
   }
@@ -102,16 +102,6 @@ void put_motion(const JointTrajectory& from, clearance_msg_JointMotion& to) {
   put_value(from.positions, to.positions);
   put_value(from.velocities, to.velocities);
 }
-
-// Fills a sequence by put(entry, entry of the message).
-template <class From, class Sequence, class Put>
-void put_list(const std::vector<From>& from, Sequence& to, const Put& put) {
-  reserve_sequence(to, from.size());
-  for (const From& entry : from) put(entry, to._buffer[to._length++]);
-}
-
-clearance_msg_Vector3 vector_of(const Vec3& v) { return {v.x(), v.y(), v.z()}; }
-Vec3 vector_of(const clearance_msg_Vector3& v) { return {v.x, v.y, v.z}; }
 
 // Infinity is not stated. A value that is no number is stated, so that it is refused.
 clearance_msg_StatedNumber stated_number(double value) { return {value != kInfinity, value}; }
@@ -205,6 +195,12 @@ std::variant<MotionQuestion, MalformedField> from_wire(const clearance_msg_Quest
   read_contacts(message, read, question);
   question.margins.clear();
   read.numbers("margins", message.margins, kMostMargins, question.margins);
+  read.list("margins_between", message.margins_between, kMostMargins, question.margins_between,
+            [&](const std::string& at, const clearance_msg_MarginBetween& from, MarginBetween& to) {
+              read.name(at + ".a", from.a, to.a);
+              read.name(at + ".b", from.b, to.b, true);
+              read.number(at + ".margin", from.margin, to.margin);
+            });
   read.number_or_default("tolerance", message.tolerance, question.tolerance);
   question.only_margins = message.only_margins;
   read_profile(message, read, question);
@@ -278,6 +274,12 @@ Sample<clearance_msg_Question> to_wire(const MotionQuestion& asked) {
   }
   message->others = static_cast<std::uint8_t>(question.others);
   put_value(question.margins, message->margins);
+  put_list(question.margins_between, message->margins_between,
+           [](const MarginBetween& from, clearance_msg_MarginBetween& to) {
+             put_value(from.a, to.a);
+             put_value(from.b, to.b);
+             to.margin = from.margin;
+           });
   message->tolerance = question.tolerance;
   message->only_margins = question.only_margins;
   const ProfileRequest profile = question.profile.value_or(ProfileRequest());
@@ -287,112 +289,6 @@ Sample<clearance_msg_Question> to_wire(const MotionQuestion& asked) {
   put_value(profile.second, message->profile_second);
   message->time_scaling = question.time_scaling;
   message->work_limit = question.work_limit;
-  return message;
-}
-
-QuestionResult from_wire(const clearance_msg_Answer& message) {
-  QuestionResult result{.client = message.client,
-                        .request = message.request,
-                        .status = static_cast<QuestionStatus>(message.status),
-                        .path = std::string(text_of(message.path)),
-                        .reason = std::string(text_of(message.reason)),
-                        .scene_revision = message.scene_revision,
-                        .cycle = message.cycle,
-                        .now_ns = message.now_ns,
-                        .lower = message.lower,
-                        .upper = message.upper,
-                        .time = message.time,
-                        .first = std::string(text_of(message.first)),
-                        .second = std::string(text_of(message.second)),
-                        .point_on_first = vector_of(message.point_on_first),
-                        .point_on_second = vector_of(message.point_on_second),
-                        .within_work_limit = message.within_work_limit,
-                        .queries = message.queries,
-                        .start_deviation = message.start_deviation,
-                        .start_joint = std::string(text_of(message.start_joint))};
-  for (std::uint32_t i = 0; i < message.margins._length; ++i) {
-    const clearance_msg_MarginVerdict& from = message.margins._buffer[i];
-    const auto verdict = static_cast<Verdict>(from.verdict);
-    const bool is_known = verdict == Verdict::kFree || verdict == Verdict::kBelow;
-    result.margins.push_back({.margin = from.margin,
-                              .verdict = is_known ? verdict : Verdict::kUndecided,
-                              .above_until = from.above_until,
-                              .below_at = from.below_at,
-                              .first = std::string(text_of(from.first)),
-                              .second = std::string(text_of(from.second))});
-  }
-  for (std::uint32_t i = 0; i < message.profile._length; ++i) {
-    const clearance_msg_ProfilePart& from = message.profile._buffer[i];
-    result.profile.push_back({.from = from.begin,
-                              .to = from.end,
-                              .lower = from.lower,
-                              .upper = from.upper,
-                              .first = std::string(text_of(from.first)),
-                              .second = std::string(text_of(from.second))});
-  }
-  if (!std::isnan(message.time_factor)) {
-    result.time_limit = TimeLimit{.is_limited = message.is_time_limited,
-                                  .factor = message.time_factor,
-                                  .factor_above = message.time_factor_above,
-                                  .time = message.time_limit_at,
-                                  .first = std::string(text_of(message.time_limit_first)),
-                                  .second = std::string(text_of(message.time_limit_second)),
-                                  .zone = std::string(text_of(message.time_limit_zone))};
-  }
-  return result;
-}
-
-Sample<clearance_msg_Answer> to_wire(const QuestionResult& result, std::uint64_t daemon) {
-  Sample<clearance_msg_Answer> message;
-  copy_text(result.client, message->client);
-  message->request = result.request;
-  message->daemon = daemon;
-  message->status = static_cast<std::uint8_t>(result.status);
-  put_value(result.path, message->path);
-  put_value(result.reason, message->reason);
-  message->scene_revision = result.scene_revision;
-  message->cycle = result.cycle;
-  message->now_ns = result.now_ns;
-  message->lower = result.lower;
-  message->upper = result.upper;
-  message->time = result.time;
-  put_value(result.first, message->first);
-  put_value(result.second, message->second);
-  message->point_on_first = vector_of(result.point_on_first);
-  message->point_on_second = vector_of(result.point_on_second);
-  put_list(result.margins, message->margins,
-           [](const MarginResult& from, clearance_msg_MarginVerdict& to) {
-             to.margin = from.margin;
-             to.verdict = static_cast<std::uint8_t>(from.verdict);
-             to.above_until = from.above_until;
-             to.below_at = from.below_at;
-             put_value(from.first, to.first);
-             put_value(from.second, to.second);
-           });
-  put_list(result.profile, message->profile,
-           [](const ProfilePart& from, clearance_msg_ProfilePart& to) {
-             to.begin = from.from;
-             to.end = from.to;
-             to.lower = from.lower;
-             to.upper = from.upper;
-             put_value(from.first, to.first);
-             put_value(from.second, to.second);
-           });
-  const TimeLimit limit =
-      result.time_limit.value_or(TimeLimit{.factor = QuestionResult::kNotKnown,
-                                           .factor_above = QuestionResult::kNotKnown,
-                                           .time = QuestionResult::kNotKnown});
-  message->is_time_limited = limit.is_limited;
-  message->time_factor = limit.factor;
-  message->time_factor_above = limit.factor_above;
-  message->time_limit_at = limit.time;
-  put_value(limit.first, message->time_limit_first);
-  put_value(limit.second, message->time_limit_second);
-  put_value(limit.zone, message->time_limit_zone);
-  message->within_work_limit = result.within_work_limit;
-  message->queries = result.queries;
-  message->start_deviation = result.start_deviation;
-  put_value(result.start_joint, message->start_joint);
   return message;
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstring>
 #include <optional>
@@ -18,8 +19,9 @@
 
 namespace clearance {
 
-inline constexpr std::string_view kNotFinite =
-    "found a number that is not finite; expected a finite one";
+[[nodiscard]] inline std::string not_finite(double found) {
+  return fmt::format("found {}; expected a finite number", found);
+}
 
 [[nodiscard]] inline std::string_view text_of(const char* text) {
   return text == nullptr ? "" : text;
@@ -55,7 +57,8 @@ struct PlacementFault {
     const clearance_msg_Placement& from, Pose& to) {
   const auto& [x, y, z] = from.position;
   to.position = Vec3(x, y, z);
-  if (!to.position.allFinite()) return PlacementFault{"position", std::string(kNotFinite)};
+  if (!to.position.allFinite())
+    return PlacementFault{"position", not_finite(std::isfinite(x) ? std::isfinite(y) ? z : y : x)};
   const auto& q = from.orientation;
   to.orientation = Eigen::Quaterniond(q.w, q.x, q.y, q.z);
   if (!is_unit(to.orientation)) {
@@ -80,6 +83,13 @@ inline void put_value(const Pose& from, clearance_msg_Placement& to) {
   const Eigen::Quaterniond& q = from.orientation;
   to.position = {from.position.x(), from.position.y(), from.position.z()};
   to.orientation = {q.x(), q.y(), q.z(), q.w()};
+}
+
+// Fills a sequence by put(entry, entry of the message).
+template <class From, class Sequence, class Put>
+void put_list(const std::vector<From>& from, Sequence& to, const Put& put) {
+  reserve_sequence(to, from.size());
+  for (const From& entry : from) put(entry, to._buffer[to._length++]);
 }
 
 }  // namespace clearance

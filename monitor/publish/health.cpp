@@ -7,6 +7,7 @@
 
 #include "monitor/intake/news.hpp"
 #include "monitor/loop/ports.hpp"
+#include "monitor/publish/refused_text.hpp"
 
 namespace clearance {
 namespace {
@@ -34,16 +35,22 @@ void fill_loop(const LoopStatistics& statistics, clearance_msg_Health& out) {
 
 // Only causes that occurred are listed; the sequence was sized for all of them.
 void add_rejection(clearance_msg_Health& out, const std::string& object, const char* cause,
-                   std::uint64_t count) {
+                   std::uint64_t count, const std::string& last = "") {
   if (count == 0 || out.rejected._length == out.rejected._maximum) return;
   clearance_msg_RejectCount& entry = out.rejected._buffer[out.rejected._length++];
   entry.object = dds_string_dup(object.c_str());
   entry.cause = dds_string_dup(cause);
   entry.count = count;
+  entry.last = dds_string_dup(last.c_str());
 }
 
 // The causes of Reject, spelt for people.
 const char* cause_name(std::size_t cause) { return name(static_cast<Reject>(cause)); }
+
+// Only the last refusal of an input is kept, whatever its cause.
+std::string last_of(const RefusedValue& refused, std::size_t cause) {
+  return static_cast<std::size_t>(refused.cause) == cause ? text_of(refused) : "";
+}
 
 // Refused messages of sensors, by cause.
 void add_refused_frames(const Scene& scene, const std::vector<SensorStatus>& sensors,
@@ -79,14 +86,16 @@ void fill_rejections(const Scene& scene, const LoopStatistics& statistics, const
     for (std::size_t cause = 0; cause < kRejects; ++cause) {
       const std::uint64_t count = statistics.rejected[object][cause];
       nameless[cause] -= std::min(count, nameless[cause]);
-      add_rejection(out, scene.objects[object].name, cause_name(cause), count);
+      add_rejection(out, scene.objects[object].name, cause_name(cause), count,
+                    last_of(statistics.refused_poses[object], cause));
     }
   }
   for (std::size_t joint = 0; joint < scene.variables.size(); ++joint) {
     for (std::size_t cause = 0; cause < kRejects; ++cause) {
       const std::uint64_t count = statistics.rejected_joints[joint][cause];
       nameless[cause] -= std::min(count, nameless[cause]);
-      add_rejection(out, "joint " + scene.variables[joint].name, cause_name(cause), count);
+      add_rejection(out, "joint " + scene.variables[joint].name, cause_name(cause), count,
+                    last_of(statistics.refused_positions[joint], cause));
     }
   }
   for (std::size_t cause = 0; cause < kRejects; ++cause) {

@@ -8,6 +8,7 @@
 
 #include "config/text/sentences.hpp"
 #include "monitor/app/log_line.hpp"
+#include "monitor/inputs/elapsed.hpp"
 
 namespace clearance {
 namespace {
@@ -52,8 +53,7 @@ void HealthLog::log_late(const clearance_msg_InputAge& input, const Poses& now) 
   } else if (now.is_of_sensor && now.stale) {
     log_line(lines::kFramesLate, input.name, age_ms);
   } else if (now.is_of_sensor) {
-    // A changed scene may have let go of the frame, so that none is late any more.
-    if (input.age_ns >= 0) log_line(lines::kFramesBack, input.name);
+    log_line(lines::kFramesBack, input.name);
   } else if (!now.stale) {
     log_line(lines::kPosesBack, input.name);
   } else if (input.contradicted) {
@@ -111,11 +111,17 @@ void HealthLog::update(const clearance_msg_Health& health,
   std::size_t logged = 0;
   for (std::uint32_t i = 0; i < health.inputs._length; ++i) {
     const clearance_msg_InputAge& input = health.inputs._buffer[i];
-    // An object that was never known is no news. For links, the log of joints reports lateness.
-    const bool stale = input.stale && input.age_ns >= 0 && !input.follows_joints;
+    // An object that was never known is no news, and one whose frame was let go is as late as
+    // before. For links, the log of joints reports lateness.
     Poses& before = poses_[input.name];  // first without poses, which is not late
-    if (std::exchange(before.stale, stale) != stale && logged++ < kLinesAtOnce)
+    const bool is_known = input.age_ns >= 0;
+    const bool stale = !input.follows_joints && (is_known ? input.stale : before.stale);
+    // A changed scene may state another age limit: then nothing has come back.
+    const std::int64_t stamp_ns = less(health.now_ns, input.age_ns);
+    if (std::exchange(before.stale, stale) != stale && (stale || stamp_ns > before.stamp_ns) &&
+        logged++ < kLinesAtOnce)
       log_late(input, before);
+    if (stale && is_known) before.stamp_ns = stamp_ns;
     if (before.other_source != input.other_source && logged++ < kLinesAtOnce) {
       log_line(lines::kTwoSources, input.name, input.source, input.other_source);
     }

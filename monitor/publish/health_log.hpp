@@ -33,6 +33,7 @@ class HealthLog {
   RefusalLog refusals_;
   struct Poses {
     bool stale = false;
+    std::int64_t stamp_ns = 0;  // of the value in use when that was told
     bool is_of_sensor = false;
     std::string other_source;
   };

@@ -28,6 +28,7 @@ void RefusalLog::add(const clearance_msg_RejectCount& entry) {
     refusals.inputs.push_back(input);
   refusals.count += grown;
   refusals.total += grown;
+  refusals.last = entry.last == nullptr ? "" : entry.last;
   refusals.quiet_s = 0;
 }
 
@@ -54,7 +55,8 @@ std::size_t RefusalLog::update(const clearance_msg_Health& health, std::size_t m
     const auto& [what, cause] = key;
     log_line(lines::kRefused, refusals.count,
              fmt::format("{} of {}", what, listed(refusals.inputs, kNamesALine)),
-             refusals.counted_s == 1 ? "second" : fmt::format("{} s", refusals.counted_s), cause,
+             refusals.counted_s == 1 ? "second" : fmt::format("{} s", refusals.counted_s),
+             refusals.last.empty() ? cause : fmt::format("{}, the last: {}", cause, refusals.last),
              refusals.total);
     refusals.named.insert(refusals.inputs.begin(), refusals.inputs.end());
     refusals.inputs.clear();

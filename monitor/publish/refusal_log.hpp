@@ -31,6 +31,7 @@ class RefusalLog {
     std::vector<std::string> inputs;  // refused since the last line
     std::set<std::string> named;      // in a line, since the refusals began
     std::uint64_t count = 0;          // since the last line
+    std::string last;                 // the value of the last one; empty: not known
     std::uint64_t total = 0;          // since the start
     int counted_s = 0;                // the seconds that `count` is from
     int silent_s = 0;                 // since the last line

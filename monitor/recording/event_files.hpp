@@ -17,9 +17,16 @@ namespace clearance {
 // Name of the metadata record of each event in a file. Its keys are cause, what and t_ns.
 inline constexpr std::string_view kEventMetadata = "clearance.event";
 
+// The bytes that the files of events of this pattern may have in all, those of former runs
+// included; 0: any number. It is a tenth of the disk that is free without them, where no option
+// states it.
+[[nodiscard]] std::uint64_t event_cap(const std::filesystem::path& file,
+                                      const EventOptions& events);
+
 // A file of an event at 10:45:12.003 UTC is called NAME-20261124T104512.003Z.mcap. It begins with
 // the scene that was in force then, and the state of every zone. An event while a file is written
-// prolongs it. Only files with such a name are ever deleted, those of former runs included.
+// prolongs it. A file that grows too large is continued in NAME-20261124T104512.003Z-2.mcap. Only
+// files with such names are ever deleted, those of former runs included.
 class EventFiles final : public RecordingSink {
  public:
   // `file`: its folder and NAME. The folder must exist, otherwise error() says so.
@@ -43,8 +50,12 @@ class EventFiles final : public RecordingSink {
   [[nodiscard]] std::uint64_t bytes() const noexcept override {
     return bytes_ + (writer_ ? writer_->bytes() : 0);
   }
-  [[nodiscard]] const std::filesystem::path& file() const noexcept override { return file_; }
-  [[nodiscard]] std::uint64_t files() const noexcept override { return files_; }
+  [[nodiscard]] const std::filesystem::path& file() const noexcept override {
+    return writer_ ? writer_->file() : file_;
+  }
+  [[nodiscard]] std::uint64_t files() const noexcept override {
+    return files_ + (writer_ ? writer_->part() : 0);
+  }
 
  private:
   // Both are as the scene was read. The files on the disk may change before an event.
@@ -55,6 +66,7 @@ class EventFiles final : public RecordingSink {
   };
 
   void keep(RingMessage message);
+  void continue_file(std::int64_t now_ns);
   void begin(std::int64_t now_ns);
   void end();
   void follow(std::uint32_t scene, std::int64_t log_ns);
@@ -62,7 +74,7 @@ class EventFiles final : public RecordingSink {
   void delete_oldest();
   bool keep_error();
 
-  std::filesystem::path pattern_, file_;
+  std::filesystem::path pattern_, file_;  // `file_`: the last one that has ended
   Topics topics_;
   RecordingOptions options_;
   EventRing ring_;
@@ -70,11 +82,12 @@ class EventFiles final : public RecordingSink {
   std::optional<RecordingWriter> writer_;  // while a file is written
   std::uint32_t written_scene_ = 0;
   std::int64_t until_ns_ = 0;
+  bool is_first_tick_ = false;  // of a file that continues another one
   bool next_is_start_ = true;
   std::int64_t started_ns_ = 0;
   int checks_ = 0;
   std::string error_;
-  std::uint64_t messages_ = 0, bytes_ = 0, files_ = 0;
+  std::uint64_t messages_ = 0, bytes_ = 0, files_ = 0;  // of files that have ended
 };
 
 }  // namespace clearance

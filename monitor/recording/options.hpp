@@ -3,6 +3,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <set>
 
 #include "monitor/wire/topics.hpp"
@@ -16,9 +17,10 @@ struct EventOptions {
   // Memory for the time before an event, taken once. If it holds less than that time, files begin
   // later.
   std::size_t ring_bytes = std::size_t{256} << 20;
-  // Files of former events are deleted, the oldest first, while all of them have more bytes than
-  // this, or when they were written longer ago than this, ns; 0: never.
-  std::uint64_t keep_bytes = 0;
+  // Files of events are deleted, the oldest first, while all of them have more bytes than this; 0:
+  // never; none: event_cap() decides. A file that reaches a quarter of it is continued in another.
+  std::optional<std::uint64_t> keep_bytes = {};
+  // Files that were written longer ago than this are deleted, ns; 0: never.
   std::int64_t keep_ns = 0;
 
   [[nodiscard]] bool any() const noexcept { return around_ns > 0; }

@@ -47,6 +47,7 @@ std::size_t bytes_of(const QueuedQuestion& queued) noexcept {
     bytes += sizeof payload + sizeof(std::string) * payload.touch.size();
     if (payload.shape) bytes += kBytesOfVertex * payload.shape->vertices.size();
   }
+  bytes += sizeof(MarginBetween) * question.margins_between.size();
   if (question.contacts) bytes += sizeof(MeantContact) * question.contacts->size();
   return bytes;
 }

@@ -88,7 +88,6 @@ CommandResult SceneCommander::execute(const Command& command, bool is_own,
   may_read_all_ = is_own;
   not_read_.clear();
   ahead_.wanted.clear();
-  ahead_.asks = ahead_.asks && !is_own;
   try {
     refusal = do_all(work, may_change, result);
   } catch (const std::exception& error) {

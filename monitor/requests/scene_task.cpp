@@ -31,7 +31,7 @@ AnswerCommand* answer_of(SceneTask& task) noexcept {
 
 std::string sender_of(const SceneTask& task) {
   if (const auto* given = std::get_if<GivenCommand>(&task))
-    return given->is_own ? std::string() : "client " + given->command.client;
+    return given->is_own ? "own" : "client " + given->command.client;
   const auto* made = std::get_if<MadeCommand>(&task);
   return made == nullptr ? std::string() : made->sender;
 }

@@ -33,14 +33,15 @@ struct GivenCommand {
 
 // A command of the daemon's own that depends on the cell in force when its turn comes.
 struct MadeCommand {
-  // The tasks of one sender are done in their order. If make() throws PoseIsLate, it waits with
-  // those that follow until the pose is back, while tasks of others are done. Not empty where
-  // make() asks for poses.
-  std::string sender = {};
-  // To be called if it waits, after a make() that has not returned. May be empty.
+  // The tasks of one sender are done in their order. If make() throws PoseIsLate, or the command
+  // names meshes that are not read yet, it waits with those that follow, while tasks of others are
+  // done. Not empty.
+  std::string sender;
+  // To be called if it waits: make() will be called again, and the scene may be another one by
+  // then. May be empty.
   std::function<void()> put_off = {};
   // A command without changes is not done, and has no result.
-  std::function<Command(const Cell& cell, const AskPose& pose)> make;
+  std::function<Command(const Cell& cell, const AskPose& pose)> make = {};
   std::size_t bytes = 0;  // that `make` holds
   // Adds changes that depend on the scene to which the others lead. All are done, or none.
   CompleteChanges complete = {};

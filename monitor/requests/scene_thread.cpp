@@ -149,7 +149,9 @@ std::optional<CommandResult> SceneThread::result_of(const MadeCommand& made) {
     return CommandResult{.status = CommandStatus::kFailed, .reason = error.what()};
   }
   if (command.changes.empty()) return std::nullopt;
-  return execute(command, true, made.complete);
+  std::optional<CommandResult> result = execute(command, true, made.complete);
+  if (has_to_wait_ && made.put_off) made.put_off();
+  return result;
 }
 
 std::optional<CommandResult> SceneThread::result_of(const KeptFiles& files) {

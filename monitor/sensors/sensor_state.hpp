@@ -52,6 +52,9 @@ struct Sensors::State {
   // The last image before the first CameraInfo: drivers publish the info of a frame after its
   // image. It counts as refused once another one replaces it.
   RawSensorMessage without_info;
+  // Of an octomap: the last map that was taken, and its time. Its server may never send it again.
+  RawSensorMessage map;
+  std::int64_t map_ns = 0;
   SeenShare seen_share;
   std::size_t own_elements = 0;            // of bodies in the last picture that was new
   std::optional<Persistence> persistence;  // none: all elements stay

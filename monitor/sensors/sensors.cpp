@@ -49,11 +49,25 @@ Sensors::Sensors(const Cell& cell, Sensors& before, const SourceNumbers& numbers
           a.most_points == b.most_points && a.least_interval_ns == b.least_interval_ns) {
         state->stream = old->stream;
         state->pairing = old->pairing;
+        keep_map(*old, *state);
       }
     }
   }
 }
 Sensors::~Sensors() = default;
+
+// Another cell may have another place, range or mount for it.
+void Sensors::keep_map(State& before, State& state) {
+  if (before.map.cdr.empty() || state.sensor.kind != SensorKind::kOctomap) return;
+  auto frame = std::make_unique<Waiting>();
+  frame->cloud = frame_decoder(before.map.type)->decode(before.map, state.sensor, decoder_);
+  if (frame->cloud == nullptr || frame->cloud->fault != FrameFault::kNoFault) return;
+  frame->came_ns = now_.monotonic_ns;
+  frame->stamp_ns = state.map_ns = before.map_ns;
+  state.map = std::move(before.map);
+  if (options_.keep) frame->message = state.map;
+  state.waiting.push_back(std::move(frame));
+}
 
 // Stamps come again after this machine's clock was set back. Samples from before say nothing about
 // frames from after it, and vice versa.
@@ -107,15 +121,8 @@ void Sensors::add_frame(const RawSensorMessage& message, const FrameDecoder& dec
   const MessageCloud& cloud = *frame->cloud;
   frame->came_ns = now_ns;
   frame->stamp_ns = cloud.stamp_ns;
-  FrameFault fault = state.stream.take(
+  const FrameFault fault = state.stream.take(
       cloud, {.stamp_ns = cloud.stamp_ns, .sent_ns = message.sent_ns, .writer = message.writer});
-  // A changed cell has no frame yet: the map that is sent again has the time of the first one.
-  if (fault == FrameFault::kFrozen && !cloud.is_stamped && state.status.frames == 0 &&
-      state.waiting.empty()) {
-    state.stream.take_back(fault);
-    frame->stamp_ns = state.stream.stamp_ns();
-    fault = FrameFault::kNoFault;
-  }
   if (cloud.image() != nullptr && fault != FrameFault::kUndecodable)
     state.pairing.take_image(frame->stamp_ns);
   if (fault == FrameFault::kNoCameraInfo) {
@@ -127,6 +134,10 @@ void Sensors::add_frame(const RawSensorMessage& message, const FrameDecoder& dec
   frame->repeats = state.stream.has_repeated();
   if (state.stream.camera()) frame->camera = *state.stream.camera();
   if (options_.keep) frame->message = message;
+  if (state.sensor.kind == SensorKind::kOctomap) {
+    state.map = message;
+    state.map_ns = frame->stamp_ns;
+  }
   // The frames that have waited for longest stay: what they wait for comes first.
   if (state.waiting.size() == kMostWaiting) {
     state.waiting.pop_back();

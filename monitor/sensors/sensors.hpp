@@ -85,7 +85,7 @@ class Sensors {
   Sensors(const Cell& cell, const SensorsOptions& options, const SourceNumbers& numbers);
   Sensors(const Cell& cell, const SensorsOptions& options);
   // For a changed cell: goes on with the transforms of `before` and the judged streams of sensors
-  // that are the same. Joints and poses are heard anew.
+  // that are the same, and with their last maps. Joints and poses are heard anew.
   Sensors(const Cell& cell, Sensors& before, const SourceNumbers& numbers);
   ~Sensors();
 
@@ -129,6 +129,7 @@ class Sensors {
   struct State;
 
   void note_time(std::int64_t came_ns);
+  void keep_map(State& before, State& state);
   [[nodiscard]] bool is_ahead(std::int64_t stamp_ns, std::int64_t came_ns) const noexcept;
   void add_transforms(const RawSensorMessage& message);
   void add_frame(const RawSensorMessage& message, const FrameDecoder& decoder, State& state,

@@ -232,6 +232,13 @@ const std::array<std::uint64_t, kRejects>& Monitor::rejected(std::uint32_t objec
   return state_->inputs.objects[object].input.rejected;
 }
 
+std::span<const RefusedValue> Monitor::refused_poses() const noexcept {
+  return state_->inputs.refused_poses;
+}
+std::span<const RefusedValue> Monitor::refused_positions() const noexcept {
+  return state_->inputs.refused_positions;
+}
+
 const Pose& Monitor::pose(std::uint32_t object) const noexcept {
   return state_->inputs.objects[object].pose;
 }

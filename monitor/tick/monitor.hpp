@@ -13,6 +13,7 @@
 #include "config/scene/stated_errors.hpp"
 #include "monitor/inputs/joint_batch.hpp"
 #include "monitor/inputs/pose_batch.hpp"
+#include "monitor/inputs/refused_value.hpp"
 #include "monitor/inputs/source_numbers.hpp"
 #include "monitor/inputs/state_bytes.hpp"
 #include "monitor/inputs/tick_time.hpp"
@@ -174,6 +175,10 @@ class Monitor {
   // Refused samples of one object, by cause (for the health topic).
   [[nodiscard]] const std::array<std::uint64_t, kRejects>& rejected(
       std::uint32_t object) const noexcept;
+
+  // The samples that were refused last, by object and by joint variable.
+  [[nodiscard]] std::span<const RefusedValue> refused_poses() const noexcept;
+  [[nodiscard]] std::span<const RefusedValue> refused_positions() const noexcept;
 
   // World from object: the pose in use. It is meaningless if no pose is in use (input_age() is -1).
   [[nodiscard]] const Pose& pose(std::uint32_t object) const noexcept;

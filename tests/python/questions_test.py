@@ -37,6 +37,19 @@ def test_a_swing_has_its_least_distance_between_its_waypoints(planar):
     assert answer.within_work_limit and answer.queries > 0
 
 
+def test_margins_of_pairs_are_not_those_of_all(planar):
+    margins = [0.8, ("wall", "lower", 0.95), ("wall", "upper", 0.95)]
+    answer = planar.ask(Question(**SWING, **REST, margins=margins))
+    assert [margin.between for margin in answer.margins] == [None, ("wall", "lower"), ("wall", "upper")]
+    assert answer.is_free(0.8) and answer.is_free(0.95, ("wall", "upper"))
+    assert not answer.is_free(0.95, ("wall", "lower")) and not answer.is_free(0.95)
+    for wrong in ([("wall",)], [("wall", "lower", "upper", 0.1)], ["wall"]):
+        with pytest.raises((TypeError, ValueError, RuntimeError)):
+            Question(**SWING, **REST, margins=wrong)
+    with pytest.raises(ValueError, match="lowr"):
+        planar.ask(Question(**SWING, **REST, margins=[("wall", "lowr", 0.1)]))
+
+
 def test_the_function_and_the_method_give_the_same_bits_in_every_thread(planar):
     question = Question(**SWING, **REST)
     first = planar.ask(question)

@@ -49,6 +49,23 @@ zones:
 )";
 }
 
+// A floor that is far larger than the rest, and two bodies with long names that overlap outside of
+// zones.
+constexpr const char* kCrowdedCell = R"(name: crowded
+units: {length: m, angle: deg}
+rate_hz: 100
+defaults: {age_limit_ms: 20000}
+objects:
+  - {name: floor, fixed: true, pose: {xyz: [0, 0, -0.05]}, box: {size: [60, 60, 0.1]}}
+  - {name: gripper_of_the_second_robot_beside_the_conveyor_left_jaw, groups: [left], box: {size: [0.2, 0.2, 0.2]}}
+  - {name: gripper_of_the_second_robot_beside_the_conveyor_right_jaw, groups: [right], box: {size: [0.2, 0.2, 0.2]}}
+pairs: [{between: [left, right], publish: true}]
+simulation:
+  movers:
+    - {object: gripper_of_the_second_robot_beside_the_conveyor_left_jaw, centre: {xyz: [0, 0, 0.5]}}
+    - {object: gripper_of_the_second_robot_beside_the_conveyor_right_jaw, centre: {xyz: [0.15, 0, 0.5]}}
+)";
+
 // The page of a running cell.
 class ViewPage : public testing::Test {
  protected:
@@ -127,6 +144,28 @@ TEST_F(ViewPage, TheHeaderFitsOneRowAndTheRightColumnALowWindow) {
   }
   EXPECT_LE(found["column"]["overflow"], 0);
   EXPECT_GE(found["column"]["rows"], 4);
+}
+
+class CrowdedViewPage : public ViewPage {
+ protected:
+  CrowdedViewPage() : ViewPage(kCrowdedCell) {}
+};
+
+TEST_F(CrowdedViewPage, TellsAPenetrationOutsideOfZonesFitsWithoutTheFloorAndLinksWhatItShows) {
+  const json found = run({"crowded"})["crowded"];
+  EXPECT_NEAR(found.value("distance", 0.0), -0.05, 1e-6);
+  EXPECT_EQ(found.value("level", ""), "inside");
+  EXPECT_THAT(found.value("header", ""), HasSubstr("alarm"));
+  EXPECT_EQ(found.value("lines", 0), 1);
+  EXPECT_NEAR(found.value("whole", 0.0), 60.0, 1e-3);
+  EXPECT_NEAR(found.value("fit", 0.0), 0.35, 1e-3);
+  EXPECT_LT(found.value("away", 100.0), 3.0);
+  EXPECT_EQ(found["heads"], json({json::array(), json::array(), json::array()}))
+      << "heads that run into the next column";
+  ASSERT_FALSE(found["labels"].empty());
+  for (const json& width : found["labels"]) EXPECT_LE(width, 310);
+  EXPECT_EQ(found["link"].value("chosen", 0), 1) << found["link"].dump();
+  EXPECT_TRUE(found["link"].value("same", false)) << found["link"].dump();
 }
 
 TEST_F(ViewPage, EscapeClosesTheKeys) {
@@ -338,6 +377,18 @@ TEST(ViewOfAUrdf, ShowsVisualMeshesWhereTheUrdfHasThem) {
   };
   EXPECT_EQ(found["modes"], json({mode("Looks", true, 2, false), mode("Both", true, 2, true),
                                   mode("Bodies", false, 0, false)}));
+  // A link draws them at once. Bodies have the colour of the first look of their link.
+  ChildProcess linked("/usr/bin/env", {"node", kScripts + "/view_page.mjs",
+                                       view.page() + "?robots=both", "robots"});
+  EXPECT_EQ(linked.wait(std::chrono::seconds(280)), 0) << linked.output();
+  const std::vector<json> of_link = lines_of(linked);
+  ASSERT_FALSE(of_link.empty()) << linked.output();
+  const json drawn = of_link.front().value("found", json::object());
+  EXPECT_EQ(drawn["mode"], "both") << linked.output();
+  EXPECT_EQ(drawn["text"], "Both");
+  EXPECT_EQ(drawn["address"], "both");
+  EXPECT_EQ(drawn["looks"], 2);
+  EXPECT_EQ(drawn["colours"]["foot"], "rgb(159,20,20)");
 }
 
 }  // namespace

@@ -105,7 +105,7 @@ const char* key(PlacedBy placed_by) {
                                                : "poses";
 }
 
-json objects_json(const Scene& scene) {
+json objects_json(const Scene& scene, const std::map<std::size_t, Vec3>& colours) {
   json list = json::array();
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];
@@ -114,6 +114,8 @@ json objects_json(const Scene& scene) {
                   {"margin", object.margin}, {"parts", json::array()}};
     for (const Part& part : object.parts) entry["parts"].push_back(part.name);
     if (object.fixed) entry["pose"] = pose_json(object.world_from_object);
+    if (const auto colour = colours.find(i); colour != colours.end())
+      entry["colour"] = {colour->second.x(), colour->second.y(), colour->second.z()};
     list.push_back(std::move(entry));
   }
   return list;
@@ -237,7 +239,7 @@ json causes_json(PlacedBy placed_by) {
 
 }  // namespace
 
-std::string scene_json(const Cell& cell) {
+std::string scene_json(const Cell& cell, const std::map<std::size_t, Vec3>& colours) {
   const Scene& scene = cell.scene;
   Meshes meshes(scene);
   json all = {{"name", scene.name},
@@ -249,7 +251,7 @@ std::string scene_json(const Cell& cell) {
                 {"zones", cell.topics.zones},
                 {"health", cell.topics.health},
                 {"separation", cell.topics.separation}}},
-              {"objects", objects_json(scene)},
+              {"objects", objects_json(scene, colours)},
               {"parts", parts_json(scene, meshes)},
               {"pairs", pairs_json(scene)},
               {"sensors", sensors_json(scene)},

@@ -168,13 +168,30 @@ json visual_json(std::size_t object, const Pose& pose, const Look& look,
   return entry;
 }
 
+std::map<std::string, std::size_t> objects_by_name(const Scene& scene) {
+  std::map<std::string, std::size_t> objects;
+  for (std::size_t i = 0; i < scene.objects.size(); ++i) objects[scene.objects[i].name] = i;
+  return objects;
+}
+
 }  // namespace
 
-std::string visuals_of(const Cell& cell) {
-  std::map<std::string, std::size_t> objects;
-  for (std::size_t i = 0; i < cell.scene.objects.size(); ++i) {
-    objects[cell.scene.objects[i].name] = i;
+std::map<std::size_t, Vec3> link_colours(const Cell& cell) {
+  const std::map<std::string, std::size_t> objects = objects_by_name(cell.scene);
+  std::map<std::size_t, Vec3> colours;
+  for (const NamedRobot& robot : robots_of(cell)) {
+    const auto urdf = robot.files.find(robot.urdf);
+    if (!urdf) continue;
+    for (const UrdfVisual& visual : read_visuals(*urdf)) {
+      const auto object = objects.find(robot.prefix + visual.link);
+      if (object != objects.end() && visual.colour) colours.emplace(object->second, *visual.colour);
+    }
   }
+  return colours;
+}
+
+std::string visuals_of(const Cell& cell) {
+  const std::map<std::string, std::size_t> objects = objects_by_name(cell.scene);
   json visuals = json::array(), left_out = json::array();
   SentMeshes sent;
   for (const NamedRobot& robot : robots_of(cell)) {

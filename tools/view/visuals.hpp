@@ -1,10 +1,13 @@
 // The looks of robots' links, as their URDFs have them, for the page. Nothing is decided by them.
 #pragma once
 
+#include <cstddef>
 #include <future>
+#include <map>
 #include <string>
 
 #include "config/cell/cell.hpp"
+#include "core/pose.hpp"
 #include "tools/view/server.hpp"
 
 namespace clearance::view {
@@ -19,6 +22,10 @@ namespace clearance::view {
 // that cannot be read, and triangles beyond two million; `left_out` names these. It takes seconds
 // for large meshes.
 [[nodiscard]] std::string visuals_of(const Cell& cell);
+
+// By object: the colour that the URDF gives the first look of a link, sRGB from 0 to 1. Reads no
+// mesh.
+[[nodiscard]] std::map<std::size_t, Vec3> link_colours(const Cell& cell);
 
 // Reads them when a page asks for the first time, beside the thread that serves.
 class Visuals {

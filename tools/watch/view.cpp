@@ -20,9 +20,10 @@ namespace {
 constexpr double kMsPerNs = 1e-6;
 constexpr std::size_t kWideColumns = 160;  // enough for witness points beside each pair
 
+// The words of idl/README.md. A status of a later version counts as unknown, as it says there.
 const char* status_name(std::uint8_t status) {
   const char* const known = name(static_cast<PairStatus>(status));
-  return *known != 0 ? known : "?";
+  return *known != 0 ? known : name(PairStatus::kUnknown);
 }
 
 // The name of a zone comes with its first message; the catalogue may have it before.
@@ -38,6 +39,7 @@ Style status_style(std::uint8_t status) {
     case PairStatus::kOverlapping:
       return Style::kAlarm;
     case PairStatus::kCarried:
+    case PairStatus::kAbsent:
       return Style::kDim;
     default:
       return Style::kWarning;
@@ -238,7 +240,8 @@ void add_inputs(std::vector<Line>& lines, const Feed& feed, std::size_t width) {
   refused.add("refused   ", Style::kDim);
   for (std::uint32_t i = 0; i < health->rejected._length; ++i) {
     const clearance_msg_RejectCount& entry = health->rejected._buffer[i];
-    refused.add(fmt::format("{}: {} ({})  ", entry.object, entry.cause, entry.count),
+    refused.add(fmt::format("{}: {} ({}{}{})  ", entry.object, entry.cause, entry.count,
+                            *entry.last == '\0' ? "" : ", last ", entry.last),
                 Style::kWarning);
   }
 }
@@ -248,7 +251,7 @@ Line pair_line(const Feed& feed, const clearance_msg_PairDistance& pair, std::si
   line.add(metres(pair.distance), Style::kBold)
       .add(metres(pair.lower) + metres(pair.upper))
       .add(fmt::format("  {}  {}  ", speed(pair.closing_speed), contact_time(pair.time_to_contact)))
-      .add(fmt::format("{:11}  ", status_name(pair.status)), status_style(pair.status))
+      .add(fmt::format("{:15}  ", status_name(pair.status)), status_style(pair.status))
       .add(fmt::format("{:9}  ", pair.refresh_age_cycles), Style::kDim);
   if (width >= kWideColumns)
     line.add(fmt::format("{}  {}  ", point(pair.witness_a), point(pair.witness_b)));
@@ -269,7 +272,7 @@ void add_pairs(std::vector<Line>& lines, const Feed& feed, Size size) {
   if (lines.size() + 3 > size.rows) return;
   lines.emplace_back(size.columns);
   Line& header = lines.emplace_back(size.columns);
-  header.add(" distance    lower    upper  closing  contact  status       ticks old  ",
+  header.add(" distance    lower    upper  closing  contact  status           ticks old  ",
              Style::kDim);
   if (size.columns >= kWideColumns) {
     header.add("witness point on the first  on the second              ", Style::kDim);

@@ -6,6 +6,7 @@
 #include <sstream>
 #include <string>
 
+#include "config/mesh/mesh_codes.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/intake/camera_messages.hpp"
 #include "monitor/intake/pose_sources.hpp"
@@ -24,6 +25,7 @@ std::string faults() {
 std::set<std::string> codes_of_the_log() {
   std::set<std::string> codes;
   std::apply([&](const auto&... line) { (codes.emplace(line.code), ...); }, lines::kAll);
+  codes.insert(kMeshCodes.begin(), kMeshCodes.end());
   return codes;
 }
 

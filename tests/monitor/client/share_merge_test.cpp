@@ -359,8 +359,8 @@ TEST(ShareMerge, CountsOfAShareDoNotFallWhereAnotherDaemonFollows) {
     message->recording = dds_string_dup("");
     message->overruns = message->partner.missing = count;
     reserve_sequence(message->rejected, 1);
-    message->rejected._buffer[message->rejected._length++] = {dds_string_dup("a"),
-                                                              dds_string_dup("late"), count};
+    message->rejected._buffer[message->rejected._length++] = {
+        dds_string_dup("a"), dds_string_dup("late"), count, dds_string_dup("12 m")};
     return message;
   };
   HealthCounts counts, of_another;
@@ -371,6 +371,7 @@ TEST(ShareMerge, CountsOfAShareDoNotFallWhereAnotherDaemonFollows) {
     join_health({}, std::vector<const HealthCounts*>{&counts, &of_another}, *sums);
     EXPECT_EQ(sums->overruns, sums->partner.missing);
     EXPECT_EQ(sums->overruns, sums->rejected._buffer[0].count);
+    EXPECT_STREQ("12 m", sums->rejected._buffer[0].last);
     return sums->overruns;
   };
   EXPECT_EQ(joined(1, 50), 150u);

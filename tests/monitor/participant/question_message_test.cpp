@@ -43,6 +43,7 @@ MotionQuestion whole_question() {
                         .touch = {}}};
   question.others = OthersMove::kNot;
   question.margins = {0.0, 0.1};
+  question.margins_between = {{"hand", "pin", 0.05}, {"slow", "", 0.2}};
   question.tolerance = 0.002;
   question.only_margins = true;
   question.profile =
@@ -102,6 +103,12 @@ TEST(QuestionMessage, ComesBackAsItWas) {
   EXPECT_EQ(a.payloads[0].name + a.payloads[0].link + a.payloads[0].touch.at(0), "parthandfinger");
   EXPECT_EQ(a.others, OthersMove::kNot);
   EXPECT_EQ(a.margins, b.margins);
+  ASSERT_EQ(a.margins_between.size(), 2u);
+  for (std::size_t i = 0; i < 2; ++i) {
+    EXPECT_EQ(a.margins_between[i].a, b.margins_between[i].a);
+    EXPECT_EQ(a.margins_between[i].b, b.margins_between[i].b);
+    EXPECT_EQ(a.margins_between[i].margin, b.margins_between[i].margin);
+  }
   EXPECT_EQ(a.tolerance, 0.002);
   EXPECT_TRUE(a.only_margins);
   ASSERT_TRUE(a.profile);
@@ -213,7 +220,9 @@ TEST(QuestionMessage, OfAnAnswerComesBackAsItWas) {
   result.first = "pin";
   result.second = "hand";
   result.point_on_first = {1, 2, 3};
-  result.margins = {{.margin = 0.1, .verdict = Verdict::kFree, .above_until = 2.0}};
+  result.margins = {{.margin = 0.1, .verdict = Verdict::kFree, .above_until = 2.0},
+                    {.margin = 0.2, .verdict = Verdict::kFree, .a = "hand", .b = "pin"},
+                    {.margin = 0.3, .verdict = Verdict::kFree, .a = "slow"}};
   result.profile = {{.from = 0.0, .to = 1.0, .lower = 0.1, .upper = 0.3, .first = "pin"}};
   result.time_limit = TimeLimit{.is_limited = true, .factor = 0.5, .zone = "slow"};
   result.within_work_limit = false;
@@ -229,7 +238,10 @@ TEST(QuestionMessage, OfAnAnswerComesBackAsItWas) {
   EXPECT_EQ(got.point_on_first, Vec3(1, 2, 3));
   EXPECT_TRUE(std::isnan(got.point_on_second.x()));
   EXPECT_TRUE(got.is_free(0.1));
-  EXPECT_FALSE(got.is_free(0.2));
+  EXPECT_FALSE(got.is_free(0.2)) << "that one is of two objects only";
+  EXPECT_TRUE(got.is_free(0.2, "hand", "pin"));
+  EXPECT_FALSE(got.is_free(0.1, "hand", "pin"));
+  EXPECT_TRUE(got.is_free(0.3, "slow"));
   ASSERT_EQ(got.profile.size(), 1u);
   EXPECT_EQ(got.profile[0].upper, 0.3);
   ASSERT_TRUE(got.time_limit);

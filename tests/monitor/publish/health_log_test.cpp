@@ -29,8 +29,13 @@ class HealthLogTest : public testing::Test {
       inputs[i].object = i;
       inputs[i].name = names[i].data();
       inputs[i].stale = names[i] == late;
+      inputs[i].age_ns = inputs[i].stale ? 500'000'000 : 0;
     }
+    update(inputs, overruns);
+  }
+  void update(std::vector<clearance_msg_InputAge>& inputs, std::uint64_t overruns = 0) {
     clearance_msg_Health health{};
+    health.now_ns = now_ns_ += 1'000'000'000;
     health.overruns = overruns;
     health.inputs._buffer = inputs.data();
     health.inputs._length = static_cast<std::uint32_t>(inputs.size());
@@ -41,6 +46,7 @@ class HealthLogTest : public testing::Test {
   }
 
   Scene first_ = scene_of_names({"cup", "bowl"}), turned_ = scene_of_names({"bowl", "cup"});
+  std::int64_t now_ns_ = 0;
   HealthLog log_{first_};
   std::shared_ptr<Logged> logged_ = std::make_shared<Logged>();
   LoggedTo to_{logged_};
@@ -68,6 +74,36 @@ TEST_F(HealthLogTest, TellsAgainOfAnObjectThatWasAwayForAChange) {
   log_.change(first_);
   second(first_, "cup", 0);
   EXPECT_EQ(lines("poses-late"), 2u) << logged_->text();
+}
+
+// A late frame is let go after a while, and a changed cell may have a longer age limit.
+TEST_F(HealthLogTest, TellsThatFramesAreBackWhenOneHasComeAndOnlyThen) {
+  Scene scene = scene_of_names({"eye"});
+  scene.sensors.emplace_back().name = "eye";
+  log_.change(scene);
+  std::string name = "eye";
+  std::int64_t stamp_ns = 1'000'000'000;
+  const auto one = [&](bool stale, bool is_known = true) {
+    std::vector<clearance_msg_InputAge> inputs(1);
+    inputs[0].name = name.data();
+    inputs[0].stale = stale;
+    inputs[0].age_ns = is_known ? now_ns_ + 1'000'000'000 - stamp_ns : -1;
+    update(inputs);
+  };
+  one(false);
+  one(true);
+  EXPECT_EQ(lines("frames-late"), 1u);
+  one(true, false);
+  one(true, false);
+  EXPECT_EQ(lines("frames-back"), 0u) << "it was let go";
+  stamp_ns = now_ns_;
+  one(false);
+  EXPECT_EQ(lines("frames-back"), 1u) << logged_->text();
+  one(true);
+  log_.change(scene);
+  one(false);
+  EXPECT_EQ(lines("frames-back"), 1u) << "the limit is another one, and no frame came";
+  EXPECT_EQ(lines("frames-late"), 2u);
 }
 
 TEST_F(HealthLogTest, TellsOfOverrunsThatGoOnInPausesThatDouble) {

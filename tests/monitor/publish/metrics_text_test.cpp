@@ -40,7 +40,8 @@ class MetricsText : public testing::Test {
     fill(health->joints._buffer[0], "elbow", 3'000'000, true, "driver");
     reserve_sequence(health->rejected, 1);
     health->rejected._length = 1;
-    health->rejected._buffer[0] = {dds_string_dup("cart"), dds_string_dup("too fast"), 7};
+    health->rejected._buffer[0] = {dds_string_dup("cart"), dds_string_dup("too fast"), 7,
+                                   dds_string_dup("")};
     reserve_sequence(health->sources, 1);
     health->sources._length = 1;
     std::strcpy(health->sources._buffer[0].source, "tracker");

@@ -10,15 +10,18 @@ namespace {
 // A robot's joints and two objects, whose refusals are counted as the daemon counts them.
 class RefusalLogTest : public testing::Test {
  protected:
-  void refuse(const std::string& input, const std::string& cause, std::uint64_t more) {
+  void refuse(const std::string& input, const std::string& cause, std::uint64_t more,
+              const std::string& value = "") {
     counts[{input, cause}] += more;
+    values[{input, cause}] = value;
   }
   // One second passes. Returns how many lines were due.
   std::size_t second(std::size_t most = 5) {
     std::vector<clearance_msg_RejectCount> entries;
     for (auto& [key, count] : counts) {
-      entries.push_back(
-          {const_cast<char*>(key.first.c_str()), const_cast<char*>(key.second.c_str()), count});
+      entries.push_back({const_cast<char*>(key.first.c_str()),
+                         const_cast<char*>(key.second.c_str()), count,
+                         const_cast<char*>(values[key].c_str())});
     }
     clearance_msg_Health health{};
     health.rejected._buffer = entries.data();
@@ -28,6 +31,7 @@ class RefusalLogTest : public testing::Test {
   [[nodiscard]] std::size_t lines() const { return logged->count("[refused]"); }
 
   std::map<std::pair<std::string, std::string>, std::uint64_t> counts;
+  std::map<std::pair<std::string, std::string>, std::string> values;
   RefusalLog refusals;
   std::shared_ptr<Logged> logged = std::make_shared<Logged>();
   LoggedTo log{logged};
@@ -49,6 +53,14 @@ TEST_F(RefusalLogTest, HasOneLineForAllJointsAndRepeatsItMoreAndMoreSeldom) {
       logged->has("35000 positions of joint j1, joint j2, joint j3 and 4 more refused in "
                   "the last 10 s: another source contradicts it (38500 since the start)"))
       << logged->text();
+}
+
+TEST_F(RefusalLogTest, TellsTheValueThatWasRefusedLast) {
+  refuse("box", "faster than it moves", 1, "(1, 2, 3) m");
+  refuse("cart", "faster than it moves", 2, "(4, 5, 6) m at 7 m/s");
+  refuse("arm", "stamp in the future", 1);
+  EXPECT_EQ(second(), 2u);
+  EXPECT_TRUE(logged->has("(4, 5, 6) m at 7 m/s")) << logged->text();
 }
 
 TEST_F(RefusalLogTest, NamesAnotherInputAndAnotherCauseAtOnce) {

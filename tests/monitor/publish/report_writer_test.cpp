@@ -193,6 +193,8 @@ TEST(ReportWriter, SaysHowTheDaemonIs) {
   statistics.tick.add(90'000);
   statistics.rejected[0][static_cast<std::size_t>(Reject::kNotUnit)] = 5;
   statistics.rejected_total[static_cast<std::size_t>(Reject::kNotUnit)] = 5;
+  statistics.refused_poses[0].cause = Reject::kNotUnit;
+  statistics.refused_poses[0].value = {1, 2, 3, 0, 0, 0, 0.5};
   statistics.rejected_total[static_cast<std::size_t>(Reject::kUnknownObject)] = 6;
   statistics.ages[0] = {.age_ns = 7'000'000, .stale = false};
   publisher.recording.begin("run.mcap");
@@ -213,6 +215,8 @@ TEST(ReportWriter, SaysHowTheDaemonIs) {
   EXPECT_STREQ(health->rejected._buffer[0].object, "ball");
   EXPECT_STREQ(health->rejected._buffer[0].cause, name(Reject::kNotUnit));
   EXPECT_EQ(health->rejected._buffer[0].count, 5u);
+  EXPECT_STREQ(health->rejected._buffer[0].last, "(0, 0, 0, 0.5)");
+  EXPECT_STREQ(health->rejected._buffer[1].last, "");
   EXPECT_STREQ(health->rejected._buffer[1].object, "(no such id)");
   EXPECT_EQ(health->rejected._buffer[1].count, 6u);
   ASSERT_EQ(health->inputs._length, 1u) << "the post is fixed: it has no age";

@@ -1,4 +1,5 @@
 // Recording by event: what a file holds, and which files go. Thinned recordings.
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -226,6 +227,68 @@ TEST_F(EventRecording, TheOldestOwnFilesGoWhenThereAreTooManyBytes) {
               ElementsAre("other-20200101T000000.000Z.mcap", "run-2.mcap",
                           "run-20190101T000000.000Z.mcap", "run-20200101T000000.000Z.mcap.bak",
                           "run-20200102T000000.000Z.mcap", "run-20200103T000000.000Z.mcap"));
+}
+
+// An event that never ends: the zone stays near.
+TEST_F(EventRecording, AnEventWithoutAnEndStaysWithinTheCapInFilesThatStandAlone) {
+  cell.scene.objects[0].max_speed = 1000.0;
+  RecordingOptions options = around(5000);
+  options.compress = false;
+  options.events.keep_bytes = 400'000;
+  options.events.ring_bytes = 20'000;
+  std::uint64_t most = 0;
+  const auto look = [&](int /*tick*/, Recorder& recorder) {
+    recorder.check();
+    std::uint64_t total = 0;
+    for (const auto& file : files()) total += std::filesystem::file_size(file);
+    most = std::max(most, total);
+  };
+  run_with(options, 4000, near_between(500, 3900), look);
+  EXPECT_LE(most, 400'000u + 100'000u) << "the cap, and the file that is written";
+  ASSERT_GE(files().size(), 3u);
+  std::vector<std::filesystem::path> in_order = files();
+  std::ranges::sort(in_order, {}, [](const auto& file) { return cycles(file).front(); });
+  EXPECT_EQ(4000u, cycles(in_order.back()).back());
+  for (std::size_t i = 0; i < in_order.size(); ++i) {
+    if (i > 0) {
+      EXPECT_EQ(cycles(in_order[i - 1]).back() + 1, cycles(in_order[i]).front());
+    }
+    const OfflineReplay alone = replay_offline(cell, in_order[i], {.compare = Comparison::kBounds});
+    EXPECT_TRUE(alone.ok()) << in_order[i] << alone.text();
+    const auto is_zone = [](const Kept& message) { return message.kind == TopicKind::kZones; };
+    EXPECT_TRUE(std::ranges::any_of(messages_of(in_order[i]), is_zone)) << "states no zone";
+  }
+}
+
+TEST_F(EventRecording, WithoutAStatedCapItIsATenthOfTheFreeDiskAndOwnFiles) {
+  const EventOptions events = around(50).events;
+  const auto tenth = [this] {
+    return static_cast<double>(std::filesystem::space(run.parent_path()).available) / 10;
+  };
+  EXPECT_NEAR(tenth(), static_cast<double>(event_cap(run, events)), 0.2 * tenth());
+  const auto old = folder / "run-20200101T000000.000Z-3.mcap";
+  std::ofstream(old) << "x";
+  std::filesystem::resize_file(old, 1'000'000'000'000);  // has no blocks: the disk is as free
+  EXPECT_NEAR(tenth() + 1e11, static_cast<double>(event_cap(run, events)), 0.2 * tenth());
+  EventOptions stated = events;
+  for (const std::uint64_t bytes : {0, 1, 123'456}) {
+    stated.keep_bytes = bytes;
+    EXPECT_EQ(bytes, event_cap(run, stated));
+  }
+}
+
+TEST_F(EventRecording, FilesThatContinueAnotherGoByTheirNumberAfterIt) {
+  for (const char* const number : {"", "-2", "-10", "-9", "-1", "-x", "-2x"})
+    std::ofstream(folder / fmt::format("run-20200101T000000.000Z{}.mcap", number))
+        << std::string(1000, 'x');
+  RecordingOptions options = around(50);
+  options.events.keep_bytes = 1000;
+  { const EventFiles recording(run, cell.topics, options); }
+  std::vector<std::string> names;
+  for (const auto& file : files()) names.push_back(file.filename());
+  EXPECT_THAT(names, testing::UnorderedElementsAre(
+                         "run-20200101T000000.000Z-10.mcap", "run-20200101T000000.000Z-1.mcap",
+                         "run-20200101T000000.000Z-x.mcap", "run-20200101T000000.000Z-2x.mcap"));
 }
 
 TEST_F(EventRecording, FilesOfEventsThatAreTooOldGo) {

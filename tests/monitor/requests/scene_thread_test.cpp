@@ -1,4 +1,5 @@
 // Commands of several clients that come at once, or faster than they can be done.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/file.h>
 #include <unistd.h>
@@ -166,6 +167,45 @@ TEST_F(SceneThreadTest, CommandsOfOthersOvertakeOneWhoseMeshIsBeingRead) {
   held.reset();
   await(4);
   EXPECT_EQ(order, (std::vector<std::string>{"other", "other again", "mesh", "after it"}));
+}
+
+// The daemon's own commands may name any file, and wait as others do.
+TEST_F(SceneThreadTest, CommandsOfClientsOvertakeAnOwnOneWhoseMeshIsBeingRead) {
+  begin();
+  std::string text = test::kCommandedCell;
+  text.insert(text.find("\npairs:") + 1,
+              "  - {name: m, groups: [things], fixed: true, pose: {xyz: [3, 0, 0]}, mesh: {file: "
+              "a.obj}}\n");
+  test::write_text(folder / "a.obj", kTetrahedron);
+  auto held = std::make_unique<HeldMesh>(folder / "a.obj");
+  std::vector<std::string> order;  // by the scene thread alone, until all have answered
+  const auto answer_as = [&](const std::string& name) {
+    return [&, name](const CommandResult& result) {
+      order.push_back(result.done() ? name : result.reason);
+      ++answered;
+    };
+  };
+  int put_off = 0;
+  EXPECT_TRUE(thread->put(MadeCommand{
+      .sender = "moveit",
+      .put_off = [&] { ++put_off; },
+      .make = [&](const Cell&, const AskPose&) { return Command{.changes = {ReplaceCell{text}}}; },
+      .answer = answer_as("made")}));
+  EXPECT_TRUE(
+      thread->put(GivenCommand{.command = {.changes = {ReplaceCell{text}, SetMargin{"table", 0.5}}},
+                               .is_own = true,
+                               .answer = answer_as("own")}));
+  EXPECT_TRUE(thread->put(GivenCommand{
+      .command = {.client = "planner", .request = 1, .changes = {SetMargin{"table", 0.01}}},
+      .answer = answer_as("client")}));
+  await(1);
+  EXPECT_EQ(order, std::vector<std::string>{"client"});
+  held.reset();
+  await(3);
+  ASSERT_EQ(order.size(), 3u);
+  EXPECT_THAT(order, testing::UnorderedElementsAre("client", "made", "own"));
+  EXPECT_EQ(put_off, 1);
+  EXPECT_EQ(object("m").parts.size(), 1u);
 }
 
 // Mesh files of commands are refused as before, whoever reads them.

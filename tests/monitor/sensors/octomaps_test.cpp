@@ -125,12 +125,13 @@ TEST_F(OctomapsTest, WithoutAStampGrowOldThoughTheyAreSentAgain) {
   EXPECT_EQ(count(FrameFault::kFrozen), 3u);
   EXPECT_EQ(cart(first, kStart + 1'000'000'000).status, PairStatus::kConverged);
   EXPECT_EQ(cart(first, kStart + 3'000'000'000).status, PairStatus::kUnknown);
-  // A changed cell has no map, and takes the old one with the time that it had.
+  // A changed cell keeps the map with the time that it had, and needs no other.
   const auto before = std::move(sensors);
   sensors = std::make_unique<Sensors>(cell, *before, SourceNumbers(cell.scene));
-  const auto again = send(one_cube({0, 0, 7}), kStart + 3'500'000'000LL);
+  const auto again = settle(kStart + 3'500'000'000LL);
   ASSERT_EQ(again.size(), 1u);
   EXPECT_EQ(again[0].stamp_ns, kStart);
+  EXPECT_NEAR(cart(again, kStart + 30'000'000).lower, 0.7 - 0.1, 1e-6);
   EXPECT_TRUE(send(one_cube({0, 0, 7}), kStart + 3'600'000'000LL).empty());
   // A map that has changed is always a new one.
   for (unsigned second = 4; second < 8; ++second) {

@@ -171,7 +171,7 @@ inline void fill(std::mt19937_64& random, Sample<clearance_msg_Health>& health) 
   reserve_sequence(health->rejected, random() % 6);
   for (std::uint32_t i = 0; i < health->rejected._maximum; ++i) {
     health->rejected._buffer[health->rejected._length++] = {any_text(random), any_text(random),
-                                                            random()};
+                                                            random(), any_text(random)};
   }
   reserve_sequence(health->inputs, random() % 6);
   for (std::uint32_t i = 0; i < health->inputs._maximum; ++i) {

@@ -148,6 +148,42 @@ async function layout() {
   return found;
 }
 
+// How the closest pair, which overlaps, is told; the view's size with and without the floor, and how far the camera is; labels, and heads of
+// the table that are wider than their columns; what a link has, and what is shown when it is opened.
+async function crowded() {
+  const found = await page.evaluate(() => {
+    const { state, view } = window.clearance, pair = state.minimum(), width = ({ min, max }) => max.x - min.x;
+    return { distance: pair.distance, level: state.levelOf(pair), header: document.getElementById("minimum").className, lines: view.lines.shown.length,
+      whole: width(view.bodies.bounds()), fit: width(view.bodies.boundsWithoutFloors()), away: view.camera.position.distanceTo(view.controls.target) };
+  });
+  found.heads = [];
+  for (const width of [1440, 1100, 1000]) {
+    await page.setViewportSize({ width, height: 900 });
+    await page.waitForTimeout(400);
+    found.heads.push(await page.$$eval("#pair-table th", (heads) => heads.filter((head) => head.scrollWidth > head.clientWidth + 1).map(({ textContent }) => textContent)));
+  }
+  await frames(5);
+  found.labels = await page.$$eval(".label", (all) => all.filter(({ hidden }) => !hidden).map(({ offsetWidth }) => offsetWidth));
+  await page.evaluate(() => window.clearance.view.on.pairChosen(window.clearance.state.minimum().pair));
+  await page.keyboard.press("l");
+  const place = () => page.evaluate(() => window.clearance.view.place);
+  const [address, before] = [await page.evaluate(() => location.href), await place()];
+  await page.goto(address);
+  await ready();
+  found.link = { address, same: before === (await place()), chosen: await page.$$eval("tr.chosen", (rows) => rows.length) };
+  return found;
+}
+
+// What the address asks to be drawn of robots, once it is; the address then, and the colour of each object.
+async function robots() {
+  await page.waitForFunction(() => window.clearance.view.visuals.visible && window.clearance.view.isReady);
+  return page.evaluate(() => {
+    const { visuals, bodies } = window.clearance.view;
+    return { mode: visuals.mode, looks: visuals.children.length, text: document.getElementById("visuals").textContent, address: new URLSearchParams(location.search).get("robots"),
+      colours: Object.fromEntries(bodies.cell.objects.map(({ name }, object) => [name, bodies.colourOf(object, (theme) => theme)])) };
+  });
+}
+
 async function keys() {
   const isOpen = () => page.$eval("#keys", ({ open }) => open);
   await page.keyboard.press("?");
@@ -324,7 +360,7 @@ async function seen() {
   return { ...(await found.jsonValue()), modes };
 }
 
-const known = { seen, causes, inputs, visuals, hiding, measuring, csv, minutes, resolution, firstView, look, labels, fading, layout, keys, ticks, zones };
+const known = { crowded, robots, seen, causes, inputs, visuals, hiding, measuring, csv, minutes, resolution, firstView, look, labels, fading, layout, keys, ticks, zones };
 try {
   await page.goto(url);
   await ready();

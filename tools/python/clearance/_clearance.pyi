@@ -538,7 +538,7 @@ class Question:
         turn_speeds: Mapping[str, float] = ...,
         contacts: Optional[Sequence[Tuple[Any, ...]]] = ...,
         others: str = ...,
-        margins: Sequence[float] = ...,
+        margins: Sequence[Union[float, Tuple[str, float], Tuple[str, str, float]]] = ...,
         tolerance: float = ...,
         only_margins: bool = ...,
         profile: int = ...,
@@ -559,6 +559,8 @@ class MarginAnswer:
     def below_at(self) -> float: ...
     @property
     def pair(self) -> Optional[Tuple[str, str]]: ...
+    @property
+    def between(self) -> Union[None, str, Tuple[str, str]]: ...
 
 class TimeLimit:
     @property
@@ -575,7 +577,7 @@ class TimeLimit:
     def zone(self) -> str: ...
 
 class MotionAnswer:
-    def is_free(self, margin: float = ...) -> bool: ...
+    def is_free(self, margin: float = ..., between: Union[None, str, Tuple[str, str]] = ...) -> bool: ...
     @property
     def status(self) -> Union[QuestionStatus, int]: ...
     @property

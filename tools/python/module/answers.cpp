@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "monitor/ask/named_answer.hpp"
@@ -20,6 +21,13 @@ namespace {
 py::object pair_of(const std::string& first, const std::string& second) {
   if (first.empty() && second.empty()) return py::none();
   return py::make_tuple(first, second);
+}
+
+// The name of a zone, or two names.
+MarginBetween pairs_of(const py::object& between) {
+  if (py::isinstance<py::str>(between)) return {.a = between.cast<std::string>(), .b = {}};
+  const auto [a, b] = between.cast<std::pair<std::string, std::string>>();
+  return {.a = a, .b = b};
 }
 
 py::object points_of(const QuestionResult& result) {
@@ -64,6 +72,13 @@ void add_margin_answer(py::module_& module, py::handle verdict_type) {
       .def_property_readonly(
           "pair", [](const MarginResult& m) { return pair_of(m.first, m.second); },
           "Names of the pair that is below it, or may be; None if FREE.")
+      .def_property_readonly(
+          "between",
+          [](const MarginResult& m) -> py::object {
+            if (m.a.empty()) return py::none();
+            return m.b.empty() ? py::object(py::str(m.a)) : pair_of(m.a, m.b);
+          },
+          "Of which pairs it is: the name of a zone, two names, or None for all pairs.")
       .def("__repr__", [](const MarginResult& m) {
         return fmt::format("<clearance.MarginAnswer: {} m {}>", m.margin, name(m.verdict));
       });
@@ -96,8 +111,16 @@ void add_motion_answer(py::module_& module, py::handle status_type) {
           "A QuestionStatus, or the number of one that this client does not know.")
       .def_property_readonly("answered", &QuestionResult::done,
                              "False: nothing is known of the motion, and `reason` says why.")
-      .def("is_free", &QuestionResult::is_free, py::arg("margin") = 0.0,
-           "True if the motion certainly keeps this margin, which the question had, m.")
+      .def(
+          "is_free",
+          [](const QuestionResult& r, double margin, const py::object& between) {
+            const MarginBetween of = between.is_none() ? MarginBetween() : pairs_of(between);
+            return r.is_free(margin, of.a, of.b);
+          },
+          py::arg("margin") = 0.0, py::arg("between") = py::none(),
+          "True if the motion certainly keeps this margin, which the question had, m: of all "
+          "pairs, "
+          "or of a zone or two names that it had it for.")
       .def_readonly("path", &QuestionResult::path, "Of a refusal: the field at fault.")
       .def_readonly("reason", &QuestionResult::reason, "Of a refusal: a sentence.")
       .def_readonly("revision", &QuestionResult::scene_revision, "Of the scene of the answer.")

@@ -102,6 +102,24 @@ MeantContact contact_of(const py::tuple& value) {
           .distance = number(4)};
 }
 
+// A number is of all pairs. The last entry of a tuple is the margin.
+void read_margins(const std::vector<py::object>& margins, Question& question) {
+  question.margins.clear();
+  for (const py::object& each : margins) {
+    if (!py::isinstance<py::tuple>(each)) {
+      question.margins.push_back(each.cast<double>());
+      continue;
+    }
+    const auto entry = py::reinterpret_borrow<py::tuple>(each);
+    if (entry.size() != 2 && entry.size() != 3)
+      throw py::value_error("margins: expected m, (zone, m) or (first, second, m) each");
+    MarginBetween& of = question.margins_between.emplace_back();
+    of.a = entry[0].cast<std::string>();
+    if (entry.size() == 3) of.b = entry[1].cast<std::string>();
+    of.margin = entry[entry.size() - 1].cast<double>();
+  }
+}
+
 Question question_of(
     const std::vector<std::string>& joints, const py::object& times, const py::object& positions,
     const py::object& velocities, const std::map<std::string, double>& held,
@@ -111,8 +129,8 @@ Question question_of(
     const std::map<std::string, py::tuple>& payloads, const std::map<std::string, double>& ages,
     const std::map<std::string, double>& turn_speeds,
     const std::optional<std::vector<py::tuple>>& contacts, const std::string& others,
-    const std::vector<double>& margins, double tolerance, bool only_margins, std::uint32_t profile,
-    double profile_tolerance,
+    const std::vector<py::object>& margins, double tolerance, bool only_margins,
+    std::uint32_t profile, double profile_tolerance,
     const std::optional<std::pair<std::string, std::string>>& profile_pair, bool time_scaling,
     std::uint64_t work_limit) {
   Question question;
@@ -149,7 +167,7 @@ Question question_of(
         fmt::format("others: found '{}'; expected 'max_speed' or 'still'", others));
   }
   question.others = others == "still" ? OthersMove::kNot : OthersMove::kWithinMaxSpeed;
-  question.margins = margins;
+  read_margins(margins, question);
   question.tolerance = tolerance;
   question.only_margins = only_margins;
   if (profile > 0) {
@@ -233,8 +251,8 @@ void add_question(py::module_& module) {
           py::arg("ages") = std::map<std::string, double>(),
           py::arg("turn_speeds") = std::map<std::string, double>(),
           py::arg("contacts") = py::none(), py::arg("others") = "max_speed",
-          py::arg("margins") = std::vector<double>{0.0}, py::arg("tolerance") = 1e-3,
-          py::arg("only_margins") = false, py::arg("profile") = 0,
+          py::arg("margins") = std::vector<py::object>{py::float_(0.0)},
+          py::arg("tolerance") = 1e-3, py::arg("only_margins") = false, py::arg("profile") = 0,
           py::arg("profile_tolerance") = 5e-3, py::arg("profile_pair") = py::none(),
           py::arg("time_scaling") = false, py::arg("work_limit") = 0,
           R"(joints: names of k joints. times: (n,), s, increasing. positions: (n, k), rad or m; joints move
@@ -253,7 +271,8 @@ or with a daemon those in force now.
 others: "max_speed": such objects and joints stay within their largest speed x time of where they are;
 "still": they do not move.
 
-margins: m; 0 asks for contact. tolerance: m, upper - lower. only_margins: bounds need not be better
+margins: m, of all pairs; or (zone, m), or (first, second, m) of objects or groups; 0 asks for
+contact. tolerance: m, upper - lower. only_margins: bounds need not be better
 than the verdicts need. profile: most parts of a distance profile; 0: none. profile_tolerance: m.
 profile_pair: names of two objects; None: the least distance. time_scaling: asks by how much the motion
 may be timed faster for zones with `separation`. work_limit: most distance queries; 0: 1,000,000, or

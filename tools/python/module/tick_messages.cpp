@@ -92,6 +92,7 @@ py::dict health_of(const clearance_msg_Health& m) {
     item["object"] = py::str(one.object);
     item["cause"] = py::str(one.cause);
     item["count"] = one.count;
+    item["last"] = py::str(one.last);
   });
   all["inputs"] = dicts_of(m.inputs, [](py::dict& item, const auto& one) {
     put_age(item, one);

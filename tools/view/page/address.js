@@ -1,4 +1,4 @@
-// The content of a link: time of a recording, chosen pairs, hidden objects, filter, sorting, place of the camera, theme.
+// The content of a link, as tools/view/README.md lists it.
 
 const text = new URLSearchParams(location.search);
 
@@ -9,12 +9,14 @@ export const asked = {
   sort: text.get("sort"),
   camera: text.get("camera"),
   theme: text.get("theme"),
+  robots: text.get("robots"),
+  seen: text.get("seen"),
   hidden: text.get("hide")?.split(",").filter(Boolean) ?? [],
   shells: text.get("zones") !== "off",
 };
 
 // The address that shows the same view again; the objects of a pair are joined by "~".
-export function addressOf({ time, pairs, filter, sort, camera, theme, shells, hidden }) {
+export function addressOf({ time, pairs, filter, sort, camera, theme, shells, hidden, robots, seen }) {
   const all = new URLSearchParams();
   if (time !== undefined) all.set("t", time.toFixed(6));
   if (pairs.length) all.set("pairs", pairs.join(","));
@@ -24,5 +26,7 @@ export function addressOf({ time, pairs, filter, sort, camera, theme, shells, hi
   if (camera) all.set("camera", camera);
   if (theme) all.set("theme", theme);
   if (!shells) all.set("zones", "off");
+  if (robots !== "bodies") all.set("robots", robots);
+  if (seen !== "all") all.set("seen", seen);
   return `${location.origin}${location.pathname}?${all}`;
 }

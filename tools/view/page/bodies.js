@@ -11,9 +11,28 @@ import { DRAWS, edgeMaterial, solidMaterial } from "./solid_material.js";
 // Hues of moving groups, distinct from the hues of levels and of unknown poses: red, amber, green, violet.
 const MOVING = ["#4f8fe8", "#a88b6a", "#3fa7c4", "#c77fc9", "#7f8f4f", "#6c86a3"];
 
+// A hue for each name, by the name: another object or order changes it only where two would share one.
+function huesOf(names) {
+  const taken = new Map();
+  for (const name of [...new Set(names)].sort()) {
+    const free = [...MOVING.keys()].map((i) => MOVING[(hashOf(name) + i) % MOVING.length]).find((hue) => ![...taken.values()].includes(hue));
+    taken.set(name, free ?? MOVING[hashOf(name) % MOVING.length]);
+  }
+  return taken;
+}
+
 export const matrixOf = ([x, y, z, qx, qy, qz, qw]) =>
   new THREE.Matrix4().compose(new THREE.Vector3(x, y, z), new THREE.Quaternion(qx, qy, qz, qw), new THREE.Vector3(1, 1, 1));
 
+// A floor is wider than all else by this, is a plate of at most this thickness as a share of its width, and may be this far above the
+// lowest point of what stands on it, m.
+const FLOOR = 1.2, PLATE = 0.1, SUNK = 0.05;
+const widthOf = ({ min, max }) => Math.max(max.x - min.x, max.y - min.y);
+const isPlate = (box) => box.max.z - box.min.z <= PLATE * widthOf(box);
+// A number that depends on the name alone.
+const hashOf = (name) => [...name].reduce((hash, letter) => (Math.imul(hash, 31) + letter.codePointAt(0)) >>> 0, 7);
+
+export const ALBEDO = 0.78; // of white paint: a whiter one would have no shades in this light
 const ABOVE = new THREE.Vector3(-0.25, 0.12, 0.8); // direction of the light, relative to the viewer
 const world = new THREE.Matrix4(), box = new THREE.Box3(); // reused in every frame
 
@@ -45,6 +64,7 @@ export class Bodies extends THREE.Group {
     this.parts.forEach(({ object }, i) => this.ofObject[object].push(i));
     this.chosen = new Set();
     this.late = new Map();
+    this.hues = huesOf(scene.objects.filter(({ fixed }) => !fixed).map(({ groups }) => groups[0] ?? ""));
     this.index = new Map(scene.objects.map(({ name }, i) => [name, i]));
     this.build(kinds, scene.meshes);
     this.grids = scene.parts.filter(({ plane }) => plane).map((part) => gridOn(part, scene.objects[part.object]));
@@ -109,10 +129,9 @@ export class Bodies extends THREE.Group {
   colourOf(object, css) {
     if (this.late.has(object)) return css("--lost");
     if (this.chosen.has(object)) return css("--accent");
-    const { fixed, groups } = this.cell.objects[object];
-    if (fixed) return css("--body");
-    this.groups ??= [...new Set(this.cell.objects.filter((each) => !each.fixed).map((each) => each.groups[0]))];
-    return MOVING[this.groups.indexOf(groups[0]) % MOVING.length];
+    const { fixed, groups, colour } = this.cell.objects[object];
+    if (colour) return `rgb(${colour.map((each) => Math.round(255 * ALBEDO * each)).join()})`;
+    return fixed ? css("--body") : this.hues.get(groups[0] ?? "");
   }
 
   // Called after a change of the theme, the selection or the late objects.
@@ -161,10 +180,25 @@ export class Bodies extends THREE.Group {
     });
     return all;
   }
+  // The same without floors: plates below all else that are wider than it.
+  boundsWithoutFloors() {
+    const all = new THREE.Box3(), boxes = [...this.boxes(this.parts.length)].map(([object, box]) => ({ box, isStill: this.cell.objects[object].fixed }));
+    for (const { box, isStill } of boxes) {
+      const others = isStill && isPlate(box) ? boxes.filter(({ box: each }) => !(isPlate(each) && each.max.z <= box.max.z)) : [];
+      const rest = others.reduce((sum, { box: each }) => sum.union(each), new THREE.Box3());
+      const isFloor = !rest.isEmpty() && box.max.z <= rest.min.z + SUNK && widthOf(box) > FLOOR * widthOf(rest);
+      if (!isFloor) all.union(box);
+    }
+    return all;
+  }
   // The boxes of moving objects in the world.
   movingBoxes() {
+    return this.boxes(this.moving);
+  }
+  // By object, of the first parts.
+  boxes(parts) {
     const boxes = new Map();
-    for (let part = 0; part < this.moving; ++part) {
+    for (let part = 0; part < parts; ++part) {
       const { object, unbounded, mesh } = this.parts[part];
       if (unbounded || !this.isShown(object)) continue;
       if (!boxes.has(object)) boxes.set(object, new THREE.Box3());

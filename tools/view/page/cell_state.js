@@ -1,7 +1,8 @@
 // The known state of the cell: the latest report, zones, health, and the alarms.
-import { counted, isKnown } from "./format.js";
+import { counted, isKnown, STATUS } from "./format.js";
 import { LiveHistory, RecordedHistory } from "./history.js";
 
+const OVERLAPPING = STATUS.indexOf("overlapping");
 const ALLOWED = 1; // ContactStatus of monitor/interface/report.hpp
 const SILENT_S = 1.0;
 const TOLD_FOR_S = 5.0; // display time of an overrun
@@ -88,10 +89,11 @@ export class CellState {
     return report && report.minimum_known && isKnown(report.minimum) ? report.minimum : undefined;
   }
 
-  // "inside", "leaving" or "outside" its zones, "free" of any, "meant" as an allowed contact, or "lost".
+  // "inside", "leaving" or "outside" its zones, "inside" too where bodies overlap without an allowed contact, "free" of any, "meant" as an allowed contact, or "lost".
   levelOf(pair) {
     if (!isKnown(pair)) return "lost";
     if (this.meant.has(pair.pair)) return "meant";
+    if (pair.status === OVERLAPPING || pair.upper < 0) return "inside";
     const { zones, margins } = this.pairs[pair.pair];
     const clearance = pair.lower - margins;
     if (zones.some(({ enter_below }) => clearance < enter_below)) return "inside";

@@ -1,7 +1,7 @@
 // Figures for people, and the knowledge of a pair's distance.
 
 // PairStatus of monitor/interface/report.hpp.
-export const STATUS = ["converged", "touching", "overlapping", "iteration limit", "carried", "stale", "unknown", "absent"];
+export const STATUS = ["converged", "touching", "overlapping", "iteration_limit", "carried", "stale", "unknown", "absent"];
 const STALE = STATUS.indexOf("stale");
 export const isKnown = (pair) => pair.status < STALE;
 

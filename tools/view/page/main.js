@@ -169,7 +169,7 @@ const pairName = (id) => `${scene.objects[state.pairs[id].a].name}~${scene.objec
 function address(withCamera) {
   return addressOf({
     time: secondsIn(), pairs: linked().map(pairName), hidden: hidden.names, filter: table.filter, sort: table.sorting, theme,
-    camera: withCamera ? view.place : asked.camera, shells: view.shells.visible,
+    camera: withCamera ? view.place : asked.camera, shells: view.shells.visible, robots: view.visuals.mode, seen: view.seen.mode,
   });
 }
 // The cell is another one: the page is loaded anew and looks from the same place. The server knows the time.
@@ -201,6 +201,20 @@ function toast(text) {
   element("toast").hidden = false;
   setTimeout(() => (element("toast").hidden = true), Math.max(1800, 60 * text.length));
 }
+// Shows the bodies of robots, their looks, or both.
+async function showRobots(mode) {
+  if (!scene.has_robots) return;
+  element("visuals").setAttribute("aria-pressed", mode !== "bodies");
+  element("visuals").textContent = { bodies: "Bodies", looks: "Looks", both: "Both" }[mode];
+  const isFirst = !view.visuals.loaded;
+  const shown = view.visuals.show(mode);
+  changed();
+  await shown;
+  ++view.changes;
+  if (!isFirst) return;
+  if (view.visuals.leftOut.length) toast(`Not drawn: ${view.visuals.leftOut.join("; ")}`);
+  else if (!view.visuals.children.length) toast("The URDF has no visual shapes");
+}
 const actions = {
   fit: () => view.fit(),
   look: (side) => view.fit(side),
@@ -216,24 +230,14 @@ const actions = {
     element("shells").setAttribute("aria-pressed", view.shells.visible);
     changed();
   },
-  visuals: async () => {
-    if (!scene.has_robots) return;
-    const mode = MODES[(MODES.indexOf(view.visuals.mode) + 1) % MODES.length];
-    element("visuals").setAttribute("aria-pressed", mode !== "bodies");
-    element("visuals").textContent = { bodies: "Bodies", looks: "Looks", both: "Both" }[mode];
-    const isFirst = !view.visuals.loaded;
-    await view.visuals.show(mode);
-    ++view.changes;
-    if (!isFirst) return;
-    if (view.visuals.leftOut.length) toast(`Not drawn: ${view.visuals.leftOut.join("; ")}`);
-    else if (!view.visuals.children.length) toast("The URDF has no visual shapes");
-  },
+  visuals: () => showRobots(MODES[(MODES.indexOf(view.visuals.mode) + 1) % MODES.length]),
   seen: () => {
     if (!scene.sensors.length) return;
     view.seen.mode = SEEN_MODES[(SEEN_MODES.indexOf(view.seen.mode) + 1) % SEEN_MODES.length];
     ++view.seen.changes;
     element("seen").setAttribute("aria-pressed", view.seen.mode !== "nothing");
-    toast(`Drawn of what cameras see: ${view.seen.mode}`);
+    toast(`Drawn of what cameras see: ${{ all: "points and shells" }[view.seen.mode] ?? view.seen.mode}`);
+    changed();
   },
   objects: () => hidden.toggleList(),
   hide: () => {
@@ -276,6 +280,8 @@ dark.addEventListener("change", () => {
   view.retheme();
 });
 onKeys(actions, track);
+if (SEEN_MODES.includes(asked.seen)) view.seen.mode = asked.seen;
+if (MODES.includes(asked.robots)) showRobots(asked.robots);
 
 // ---- Frames
 
@@ -293,7 +299,7 @@ function frame(nowMs) {
   plots.draw(state, chosen, nowMs);
   measuring.draw(state, nowMs);
   if (track && state.timeNs) track.draw(secondsIn());
-  if (state.report && view.fitted) firstMs ??= nowMs;
+  if (state.report && view.fitted && view.isReady) firstMs ??= nowMs;
   drawnReport = state.reportNs;
   ++frames;
   times.push(nowMs);

@@ -13,6 +13,9 @@ const HUES = ["--accent", "--lost", "--good", "--near", "--alarm", "--quiet"];
 // A number with at most five characters.
 const axisNumber = (value) => (Math.abs(value) < 1e4 ? String(Number(value.toPrecision(3))) : `${Number((1e-3 * value).toPrecision(3))}k`).replace("-", "−");
 
+// "20 s ago" as an axis has it.
+const ago = (s) => (s <= -120 ? `−${Number((-s / 60).toPrecision(2))} min` : `−${Math.round(-s)} s`);
+
 // Functions give the colours, since the theme may change.
 const curve = (hue, more) => ({ stroke: () => css(hue), width: 1.6, points: { show: false }, ...more });
 const filled = (hue) => curve(hue, { fill: () => `color-mix(in srgb, ${css(hue)} 14%, transparent)` });
@@ -25,13 +28,13 @@ class Plot {
   // `span()`: the width in s.
   constructor(id, series, span) {
     this.element = document.getElementById(id);
-    const grid = { stroke: () => css("--line"), width: 1 }, ticks = { show: false };
+    const grid = { stroke: () => css("--line"), width: 1 }, ticks = { show: false }, font = "10px system-ui, sans-serif", stroke = () => css("--quiet");
     this.plot = new uPlot({
-      ...this.size(), legend: { show: false }, cursor: { show: false }, padding: [7, 0, 6, 0],
+      ...this.size(), legend: { show: false }, cursor: { show: false }, padding: [7, 0, 0, 0],
       scales: { x: { time: false, range: () => [-span(), 0] }, y: { range: valueRange } },
       axes: [
-        { size: 0, grid, ticks, splits: () => [(-2 / 3) * span(), (-1 / 3) * span()], values: () => [] },
-        { size: 34, gap: 5, grid, ticks, font: "10px system-ui, sans-serif", stroke: () => css("--quiet"),
+        { size: 13, gap: 1, grid, ticks, font, stroke, splits: () => [(-2 / 3) * span(), (-1 / 3) * span()], values: (plot, splits) => splits.map(ago) },
+        { size: 34, gap: 5, grid, ticks, font, stroke,
           splits: (plot, axis, low, high) => ticksOf(low, high), values: (plot, splits) => splits.map(axisNumber) },
       ],
       series: [{}, ...series],

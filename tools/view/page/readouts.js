@@ -62,7 +62,8 @@ function healthRows({ report, health }) {
   for (const { name, age_ns, contradicted } of health.inputs.filter(({ stale }) => stale).slice(0, 6)) {
     rows.push(["Late", `${name}: ${age_ns < 0 ? "never seen" : `${milliseconds(age_ns)} ms`}${contradicted ? ", contradicted" : ""}`, true]);
   }
-  for (const { object, cause, count } of health.rejected.slice(0, 6)) rows.push(["Refused", `${object}: ${cause} (${count})`, true]);
+  for (const { object, cause, count, last } of health.rejected.slice(0, 6))
+    rows.push(["Refused", `${object}: ${cause} (${count}${last ? `, last ${last}` : ""})`, true]);
   if (health.recording) rows.push(["Recording", health.recording]);
   return rows;
 }

@@ -149,11 +149,11 @@ export class SceneView {
   }
   // True when the camera has its place, or when there is nothing to show yet.
   get isReady() {
-    return this.fitted || !this.sphere(false);
+    return (this.fitted || !this.sphere(false)) && !this.visuals.isLoading;
   }
 
   sphere(moving) {
-    const bounds = moving ? this.movingBounds() : this.bodies.bounds();
+    const bounds = moving ? this.movingBounds() : this.bodies.boundsWithoutFloors();
     bounds.union(this.reached);
     return bounds.isEmpty() ? undefined : bounds.getBoundingSphere(new THREE.Sphere());
   }

@@ -6,7 +6,7 @@ import { css } from "./format.js";
 import { everywhere, PLACED, Placements, trianglesOf } from "./placements.js";
 
 // What is drawn of them.
-export const SEEN_MODES = ["points and shells", "points", "nothing"];
+export const SEEN_MODES = ["all", "points", "nothing"];
 
 const POINT_PIXELS = 2.6;
 const NOISE = 0.04; // m: points are drawn so much nearer to the viewer, else half of them would be hidden in what they show

@@ -1,11 +1,10 @@
 // The looks of robots' links, as their URDFs have them, in place of the bodies that the queries use, or within them.
 import * as THREE from "three";
-import { matrixOf } from "./bodies.js";
+import { ALBEDO, matrixOf } from "./bodies.js";
 import { css } from "./format.js";
 import { plainMaterial } from "./solid_material.js";
 
 const AGAIN_MS = 300; // while the server reads the meshes
-const ALBEDO = 0.78; // of white paint: a whiter one would have no shades in this light
 
 // What is drawn of robots: the bodies, their looks, or their looks with the bodies around them as glass.
 export const MODES = ["bodies", "looks", "both"];
@@ -40,7 +39,9 @@ export class Visuals extends THREE.Group {
   // The meshes are fetched when they are first needed.
   async show(mode) {
     this.mode = mode;
-    if (mode !== "bodies") await (this.loaded ??= this.load());
+    this.isLoading = mode !== "bodies";
+    if (this.isLoading) await (this.loaded ??= this.load());
+    this.isLoading = false;
     this.visible = this.mode !== "bodies";
     this.bodies.replace(this.visible ? this.children.map(({ userData }) => userData.object) : [], this.mode === "both");
   }
