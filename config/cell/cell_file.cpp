@@ -168,6 +168,10 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   if (errors_node != nullptr)
     cell.scene.attached_error = read_errors(*errors_node, quantities, robots, list);
   allow_by_matrices(list, robots.may_touch);
+  for (Object& object : list.objects) {
+    const auto error = list.mesh_errors.find(object.name);
+    if (error != list.mesh_errors.end()) object.mesh_error = error->second;
+  }
   if (options_.mesh_errors != nullptr) *options_.mesh_errors = std::move(list.mesh_errors);
   refuse_same_names(list, diagnostics_);
   refuse_too_many_sources(list, robots.variables, robots_node, diagnostics_);

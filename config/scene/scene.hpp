@@ -52,6 +52,7 @@ struct Object {
   double pose_error = 0.0;
   // Stated: of the pose of a fixed object, of poses as sent, or of a sensor's mount; not of a link.
   PlaceError place_error = {};
+  double mesh_error = 0.0;    // m: no point of its parts is farther from its meshes than this
   double shape_error = 0.0;   // stated, m: no point of the true body is farther from its parts
   RestingOn resting_on = {};  // of a fixed object that is attached to another
   bool may_jump = false;      // its poses may jump, as a simulation's do

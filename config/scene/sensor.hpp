@@ -113,6 +113,13 @@ struct Sensor {
   // limit. Empty: no element is cropped.
   std::vector<ReachBall> crop;
 
+  // A second witness of robots (monitor/sensors/witness.hpp). A robot is not where its joints say
+  // if more than `witness_share` of the rays that should meet it go through it, in
+  // `witness_frames` pictures in a row.
+  bool is_witness = false;
+  double witness_share = 0.1;
+  std::uint32_t witness_frames = 5;
+
   // Reports say how near each link is to a place in the picture that the frame has not seen. Only a
   // depth image has such places.
   bool unseen = false;

@@ -44,6 +44,7 @@ RobotInputs::RobotInputs(const Scene& scene)
       heard_(heard_at_the_start(scene)),
       variables_(scene.variables.size()),
       bases_(scene.robots.size()),
+      seen_(scene.sensors.size() * scene.robots.size()),
       kinematics_(scene.robots) {
   for (std::uint32_t robot = 0; robot < scene.robots.size(); ++robot) {
     for (const RobotLink& link : scene.robots[robot].links) {
@@ -52,8 +53,26 @@ RobotInputs::RobotInputs(const Scene& scene)
   }
 }
 
+void RobotInputs::witness(std::uint32_t sensor, const RobotsSeen& seen,
+                          std::uint32_t frames) noexcept {
+  const std::size_t robots = scene_.robots.size();
+  for (std::size_t r = 0; r < std::min<std::size_t>(robots, kMostRobotsSeen); ++r) {
+    const std::uint64_t bit = std::uint64_t{1} << r;
+    seen_[sensor * robots + r].add((seen.there & bit) != 0, (seen.not_there & bit) != 0, frames);
+  }
+}
+
+bool RobotInputs::is_denied(std::uint32_t robot) const noexcept {
+  const std::size_t robots = scene_.robots.size();
+  for (std::size_t i = robot; i < seen_.size(); i += robots)
+    if (seen_[i].denied) return true;
+  const RobotBase& base = scene_.robots[robot].base;
+  return base.kind == RobotBase::Kind::kLink && is_denied(base.robot);
+}
+
 bool RobotInputs::is_lost(std::uint32_t robot, std::uint32_t link,
                           std::span<const TrackedObject> objects) const noexcept {
+  if (is_denied(robot)) return true;
   for (;;) {
     for (; link > 0; link = scene_.robots[robot].joints[link - 1].parent) {
       const RobotJoint& joint = scene_.robots[robot].joints[link - 1];
@@ -85,11 +104,19 @@ void RobotInputs::take_over(const RobotInputs& before, const SceneMap& map) noex
   for (std::size_t i = 0; i < heard_.size(); ++i) {
     if (map.robots[i] != SceneMap::kNone) heard_[i] = before.heard_[map.robots[i]];
   }
+  // The sensors of a scene stand in the order of the cell.
+  const std::size_t robots = heard_.size(), robots_before = before.heard_.size();
+  for (std::size_t i = 0; i < seen_.size(); ++i) {
+    const std::uint32_t old = map.robots[i % robots];
+    const std::size_t at = i / robots * robots_before + old;
+    if (old != SceneMap::kNone && at < before.seen_.size()) seen_[i] = before.seen_[at];
+  }
 }
 
 void RobotInputs::save(StateWriter& out) const {
   out.put(std::span(variables_));
   for (const bool heard : heard_) out.put(heard);
+  out.put(std::span(seen_));
 }
 
 void RobotInputs::restore(StateReader& in) noexcept {
@@ -99,6 +126,7 @@ void RobotInputs::restore(StateReader& in) noexcept {
     in.take(value);
     heard = value;
   }
+  in.take(std::span(seen_));
 }
 
 void RobotInputs::place(std::int64_t now_ns, std::span<TrackedObject> objects) noexcept {
@@ -113,13 +141,19 @@ void RobotInputs::place(std::int64_t now_ns, std::span<TrackedObject> objects) n
   kinematics_.place(variables_, bases_);
   for (std::uint32_t robot = 0; robot < scene_.robots.size(); ++robot) {
     if (!heard_[robot]) continue;
+    const bool denied = !seen_.empty() && is_denied(robot);
     const std::vector<RobotLink>& links = scene_.robots[robot].links;
     for (std::size_t link = 0; link < links.size(); ++link) {
       if (links[link].object == RobotLink::kNoObject) continue;
       const Object& object = scene_.objects[links[link].object];
       TrackedObject& state = objects[links[link].object];
-      if (!object.fixed && !state.absent)
-        follow(kinematics_.links(robot)[link], object, now_ns, state);
+      if (object.fixed || state.absent) continue;
+      LinkState link_state = kinematics_.links(robot)[link];
+      if (denied) {
+        link_state.late = link_state.contradicted = true;
+        link_state.unobserved_shift = kInfinity;
+      }
+      follow(link_state, object, now_ns, state);
     }
   }
 }

@@ -12,6 +12,7 @@
 #include "monitor/bodies/tracked_object.hpp"
 #include "monitor/bodies/tracked_variable.hpp"
 #include "monitor/inputs/state_bytes.hpp"
+#include "monitor/interface/robots_seen.hpp"
 
 namespace clearance {
 
@@ -49,6 +50,12 @@ class RobotInputs {
     return object >= first_link_ && heard_[robot_of_[object - first_link_]];
   }
 
+  // A picture of this sensor says whether robots are where their joints say; `frames` pictures in a
+  // row decide. While one sensor denies it, a robot and what it carries count as contradicted.
+  void witness(std::uint32_t sensor, const RobotsSeen& seen, std::uint32_t frames) noexcept;
+  // A sensor denies that the robot, or what carries it, is where its joints say.
+  [[nodiscard]] bool is_denied(std::uint32_t robot) const noexcept;
+
   // After place(): a joint between the world, or the object on which the robot stands, and this
   // link has no position, is contradicted, or may be anywhere. The same holds for that object.
   [[nodiscard]] bool is_lost(std::uint32_t robot, std::uint32_t link,
@@ -73,6 +80,7 @@ class RobotInputs {
   std::vector<bool> heard_;              // by robot
   std::vector<TrackedVariable> variables_;
   std::vector<LinkState> bases_;  // by robot
+  std::vector<SeenCount> seen_;   // by sensor and robot
   ForwardKinematics kinematics_;
 };
 

@@ -42,6 +42,7 @@ SensorReader::SensorReader(const Cell& cell, Participant& participant)
       where_(participant.where()),
       silence_said_(cell.scene.sensors.size()),
       is_shell_thick_(cell.scene.sensors.size()),
+      is_denied_(cell.scene.sensors.size(), std::vector<bool>(cell.scene.robots.size())),
       last_(cell.scene.sensors.size()),
       names_(cell.scene),
       sent_(cell.scene.sensors.size()) {
@@ -246,6 +247,7 @@ void SensorReader::log_news() {
   for (const News& news : intake_.take_news()) log_text(news.level, news.text, news.code);
   tell_of_silence();
   tell_of_shells();
+  tell_of_robots();
 }
 
 void SensorReader::tell_of_silence() {
@@ -271,6 +273,27 @@ void SensorReader::tell_of_shells() {
                cell_->scene.objects[thickest->object].name);
     }
     is_shell_thick_[i] = is_thick;
+  }
+}
+
+// Each time that a witness denies a robot, and when it does so no more.
+void SensorReader::tell_of_robots() {
+  for (std::uint32_t i = 0; i < is_denied_.size(); ++i) {
+    const Sensor& sensor = cell_->scene.sensors[i];
+    if (!sensor.is_witness) continue;
+    const SensorStatus status = sensors_->status(i);
+    for (std::size_t r = 0; r < status.robots.size(); ++r) {
+      const auto& [rays, count] = status.robots[r];
+      if (count.denied == is_denied_[i][r]) continue;
+      is_denied_[i][r] = count.denied;
+      const std::string& robot = cell_->scene.robots[r].name;
+      if (count.denied) {
+        log_line(lines::kRobotNotThere, sensor.name, robot, rays.through,
+                 rays.through + rays.agreeing);
+      } else {
+        log_line(lines::kRobotThere, sensor.name, robot);
+      }
+    }
   }
 }
 

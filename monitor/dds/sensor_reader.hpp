@@ -78,6 +78,7 @@ class SensorReader {
   void log_news();
   void tell_of_silence();
   void tell_of_shells();
+  void tell_of_robots();
   [[nodiscard]] std::string why_silent(const Sensor& sensor, const SensorStatus& status) const;
 
   const Cell* cell_;
@@ -102,8 +103,9 @@ class SensorReader {
   std::int64_t now_ns_ = 0, started_ns_ = 0;  // CLOCK_MONOTONIC
   std::int64_t no_memory_ns_ = 0;             // when the log last told of it; 0: never
   std::string where_;
-  std::vector<bool> silence_said_;    // by sensor
-  std::vector<bool> is_shell_thick_;  // by sensor, as it was said
+  std::vector<bool> silence_said_;            // by sensor
+  std::vector<bool> is_shell_thick_;          // by sensor, as it was said
+  std::vector<std::vector<bool>> is_denied_;  // by sensor and robot, as it was said
   // The last frame of a sensor, whose cloud stays as it is while mutex_ is held; and its copy.
   struct Last {
     SensorFrame frame;

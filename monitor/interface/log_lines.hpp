@@ -168,6 +168,14 @@ inline constexpr LogLine<Text, double, Text> kShellThick{
     "sensor {}: what it sees within {:.3f} m of '{}' is left out, since that body may be anywhere "
     "there. Pairs of other objects count what was left out as an obstacle"};
 
+inline constexpr LogLine<Text, Text, std::uint32_t, std::uint32_t> kRobotNotThere{
+    "robot-not-there", kError,
+    "sensor {} sees through robot '{}' at {} of {} rays that should meet it: the robot, its model "
+    "or "
+    "the sensor is not where it should be. What hangs on the robot is unknown"};
+inline constexpr LogLine<Text, Text> kRobotThere{"robot-there", kInfo,
+                                                 "sensor {} sees robot '{}' where its joints say"};
+
 // ---- Joints
 
 inline constexpr LogLine<Text, Text, Text> kJointsHeard{"joints-heard", kInfo,

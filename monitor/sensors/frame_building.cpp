@@ -86,11 +86,11 @@ void Sensors::build(State& state, const Waiting& frame, SeenCloud& cloud, const 
 FrameFault Sensors::build_at(State& state, const Waiting& frame, const PastPose& place,
                              const Carrier& carrier, SeenCloud& cloud, const Use& use, bool again) {
   const auto began = std::chrono::steady_clock::now();
-  const SensorFrame out{.cloud = &cloud,
-                        .stamp_ns = frame.stamp_ns,
-                        .world_from_sensor = place.world_from_body,
-                        .pose_error = place.error(state.sensor.extent()),
-                        .carrier = carrier};
+  SensorFrame out{.cloud = &cloud,
+                  .stamp_ns = frame.stamp_ns,
+                  .world_from_sensor = place.world_from_body,
+                  .pose_error = place.error(state.sensor.extent()),
+                  .carrier = carrier};
   if (!(rounded_up(state.sensor.extent() + out.pose_error) <= state.sensor.view_radius()))
     return FrameFault::kNoPlace;
   if (const FrameFault fault = fill(state, frame, place, cloud, again);
@@ -109,6 +109,14 @@ FrameFault Sensors::build_at(State& state, const Waiting& frame, const PastPose&
   }
   leave_out(state, frame, place, cloud);
   if (cloud.size() == 0) return FrameFault::kNothingSeen;
+  out.robots = state.robots;
+  for (std::size_t r = 0; r < state.status.robots.size(); ++r) {
+    const bool counts = r < kMostRobotsSeen;
+    state.status.robots[r].rays = witness_.rays()[r];
+    state.status.robots[r].count.add(counts && (out.robots.there >> r & 1U) != 0,
+                                     counts && (out.robots.not_there >> r & 1U) != 0,
+                                     state.sensor.witness_frames);
+  }
   if (!again) state.seen_share.use();
   SensorStatus& status = state.status;
   ++status.frames;
@@ -185,6 +193,8 @@ FrameFault Sensors::fill(State& state, const Waiting& frame, const PastPose& pla
         fault != FrameFault::kNoFault) {
       return fault;
     }
+    if (sensor.is_witness)
+      state.robots = witness_.judge(sensor, frame.camera, *frame.cloud->image(), place, postures_);
     own_image_.leave_out(sensor, frame.cloud->is_along_ray(sensor), place, postures_, cloud, body_);
     return FrameFault::kNoFault;
   }

@@ -29,12 +29,15 @@ Sensors::Sensors(const Cell& cell, const SensorsOptions& options, const SourceNu
       options_(options),
       postures_(cell.scene, numbers),
       mounts_(cell),
-      own_image_(cell.scene) {
+      own_image_(cell.scene),
+      witness_(cell.scene) {
   const Scene& scene = cell.scene;
   for (std::uint32_t i = 0; i < scene.sensors.size(); ++i) {
     states_.push_back(
         std::make_unique<State>(i, scene.sensors[i], scene.objects[scene.sensors[i].object]));
     states_.back()->status.own.resize(own_image_.bodies());
+    if (states_.back()->sensor.is_witness)
+      states_.back()->status.robots.resize(cell.scene.robots.size());
   }
 }
 Sensors::Sensors(const Cell& cell, Sensors& before, const SourceNumbers& numbers)

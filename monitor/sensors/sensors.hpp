@@ -19,6 +19,7 @@
 #include "monitor/sensors/mounts.hpp"
 #include "monitor/sensors/organised_points.hpp"
 #include "monitor/sensors/own_image.hpp"
+#include "monitor/sensors/witness.hpp"
 #include "monitor/tick/monitor.hpp"
 
 namespace clearance {
@@ -59,6 +60,12 @@ struct OwnImageStatus {
   double unseen = -kInfinity;  // m: lower bound to the nearest unseen place, if asked for
 };
 
+// What a sensor that is a witness says of a robot.
+struct RobotSeen {
+  RaysOfRobot rays;  // of the last picture
+  SeenCount count;
+};
+
 struct SensorStatus {
   std::uint64_t heard = 0;    // messages on its topic, but for CameraInfo
   std::uint64_t frames = 0;   // built
@@ -73,6 +80,7 @@ struct SensorStatus {
   // Messages that were used (kNoFault) or refused, by cause.
   std::array<std::uint64_t, kFrameFaults> counts{};
   std::vector<OwnImageStatus> own;
+  std::vector<RobotSeen> robots;  // as Scene::robots; empty: the sensor is no witness
   // Why the last frame was refused as kRobotElsewhere, with frame and difference; empty: it was
   // not.
   std::string robot_elsewhere;
@@ -156,6 +164,7 @@ class Sensors {
   PostureHistory postures_;
   Mounts mounts_;
   OwnImage own_image_;
+  Witness witness_;
   std::vector<std::unique_ptr<State>> states_;  // by sensor
   CdrDecoder decoder_;
   SlabBody body_;

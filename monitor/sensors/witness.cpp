@@ -38,7 +38,8 @@ Span in_planes(const ConvexBody& body, const Vec3& origin, const Vec3& along,
 
 Span in_ball(const Vec3& centre, double radius, const Vec3& origin, const Vec3& along) noexcept {
   const Vec3 from = origin - centre;
-  const double a = along.squaredNorm(), b = from.dot(along), c = from.squaredNorm() - radius * radius;
+  const double a = along.squaredNorm(), b = from.dot(along),
+               c = from.squaredNorm() - radius * radius;
   const double root = b * b - a * c;
   if (!(radius > 0.0) || !(root > 0.0)) return {.to = -kInfinity};
   return {.from = std::max(0.0, (-b - std::sqrt(root)) / a), .to = (-b + std::sqrt(root)) / a};
@@ -70,9 +71,9 @@ Span inside(const ConvexBody& body, const Vec3& origin, const Vec3& along, doubl
     const CurvedShape& shape = body.curved;
     if (shape.kind == CurvedShape::Kind::kTruncatedCone) {
       const auto& [low, high] = shape.discs;
-      const double radius = (offset > 0.0 ? std::max(low.radius, high.radius)
-                                          : std::min(low.radius, high.radius)) +
-                            body.radius + offset;
+      // A cone is not looked into: how deep a place is in it depends on its slope.
+      if (offset < 0.0 && low.radius != high.radius) return {.to = -kInfinity};
+      const double radius = std::max(low.radius, high.radius) + body.radius + offset;
       const double more = body.radius + offset;
       return in_cylinder(low.height - more, high.height + more, radius, origin, along);
     }
@@ -144,14 +145,12 @@ void Witness::meet(const Part& part, const RelativePose& camera_from_part, doubl
       if (!grown.any()) continue;
       nearest_[index] = std::min(nearest_[index], static_cast<float>(grown.from));
       const Span shrunk = inside(part.shape, origin, along, -shrunk_by);
-      if (shrunk.any())
-        surest_[index] = std::min(surest_[index], static_cast<float>(shrunk.from));
+      if (shrunk.any()) surest_[index] = std::min(surest_[index], static_cast<float>(shrunk.from));
     }
   }
 }
 
-void Witness::count(std::uint32_t robot, const Sensor& sensor, const PinholeCamera& camera,
-                    const DepthImage& image) noexcept {
+void Witness::count(std::uint32_t robot, const Sensor& sensor, const DepthImage& image) noexcept {
   const DepthError error{sensor.error_constant, sensor.error_quadratic};
   RaysOfRobot& rays = rays_[robot];
   for (std::uint32_t row = 0; row < grid_.rows; ++row) {
@@ -169,7 +168,6 @@ void Witness::count(std::uint32_t robot, const Sensor& sensor, const PinholeCame
       }
     }
   }
-  static_cast<void>(camera);
 }
 
 RobotsSeen Witness::judge(const Sensor& sensor, const PinholeCamera& camera,
@@ -182,6 +180,8 @@ RobotsSeen Witness::judge(const Sensor& sensor, const PinholeCamera& camera,
   grid_.columns = rays_of(image.width);
   grid_.rows = rays_of(image.height);
 
+  const std::uint32_t mount = errors_.source_of(sensor.object);
+  const double mount_turn = mount == ErrorSource::kNone ? 0.0 : errors_.sources()[mount].rotation;
   RobotsSeen seen;
   const auto robots = std::min<std::size_t>(scene_.robots.size(), kMostRobotsSeen);
   for (std::uint32_t r = 0; r < robots; ++r) {
@@ -197,16 +197,20 @@ RobotsSeen Witness::judge(const Sensor& sensor, const PinholeCamera& camera,
       if (!past.known) continue;
       const Object& object = scene_.objects[i];
       for (const Part& part : object.parts) {
-        const double reach = part.object_from_part.position.norm() + part.shape.bounding_radius +
-                             part.shape.radius;
-        const double error = rounded_up(place.error(sensor.extent()) + past.error(reach) +
-                                        object.mesh_error + object.shape_error +
-                                        errors_.largest(i, sensor.object));
+        const double radius = part.shape.bounding_radius + part.shape.radius;
+        const double reach = part.object_from_part.position.norm() + radius;
         const Pose world_from_part = compose(past.world_from_body, part.object_from_part);
+        const double distance =
+            (world_from_part.position - place.world_from_body.position).norm() + radius;
+        // The errors of the mount count for this distance, not for the whole picture.
+        const double beyond = std::max(0.0, sensor.extent() - distance) * mount_turn;
+        const double error =
+            rounded_up(place.error(distance) + past.error(reach) + object.mesh_error +
+                       object.shape_error + (errors_.largest(i, sensor.object) - beyond));
         meet(part, relative_pose(place.world_from_body, world_from_part), error, camera);
       }
     }
-    count(r, sensor, camera, image);
+    count(r, sensor, image);
     const std::uint32_t met = rays_[r].agreeing + rays_[r].through;
     if (met < kLeastRays) continue;
     const bool is_through = rays_[r].through > sensor.witness_share * met;

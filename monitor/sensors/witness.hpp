@@ -1,9 +1,9 @@
 // A camera as a second witness: does it see each robot where its joints say?
 //
 // Where the model, shrunk by all errors that are stated or known, is in a pixel's ray, the true
-// robot is, too. So a pixel whose depth is beyond that place sees through the robot: its joints, its
-// model, or the place of the camera are not as stated. Pixels without depth, and things in front of
-// the robot, prove nothing.
+// robot is, too. So a pixel whose depth is beyond that place sees through the robot: its joints,
+// its model, or the place of the camera are not as stated. Pixels without depth, and things in
+// front of the robot, prove nothing.
 #pragma once
 
 #include <cstdint>
@@ -45,20 +45,15 @@ class Witness {
   struct Grid {
     std::uint32_t step = 1, columns = 0, rows = 0;
   };
-  // Where a ray is inside of a body, as depths.
-  struct Inside {
-    float entry = 0.0F, exit = 0.0F;
-  };
   void meet(const Part& part, const RelativePose& camera_from_part, double shrunk_by,
             const PinholeCamera& camera);
-  void count(std::uint32_t robot, const Sensor& sensor, const PinholeCamera& camera,
-             const DepthImage& image) noexcept;
+  void count(std::uint32_t robot, const Sensor& sensor, const DepthImage& image) noexcept;
 
   const Scene& scene_;
   StatedErrors errors_;
   Grid grid_;
-  // By ray, of the robot that is looked at: where its shrunk bodies begin, and where it may begin at
-  // the nearest, m.
+  // By ray, of the robot that is looked at: where its shrunk bodies begin, and where it may begin
+  // at the nearest, m.
   std::vector<float> surest_, nearest_;
   std::vector<RaysOfRobot> rays_;
 };

@@ -335,6 +335,8 @@ void Monitor::State::take_frames() noexcept {
       clearance::refuse(object, *cause, inputs);
       continue;
     }
+    if (scene.sensors[sensor].is_witness)
+      inputs.robots.witness(sensor, frame.robots, scene.sensors[sensor].witness_frames);
     culling.forget_object(object, table);
     clouds->set(sensor, {frame.cloud, frame.pose_error});
     shown[sensor].in_use = frame;

@@ -18,6 +18,7 @@
 #include "monitor/inputs/state_bytes.hpp"
 #include "monitor/inputs/tick_time.hpp"
 #include "monitor/interface/report.hpp"
+#include "monitor/interface/robots_seen.hpp"
 #include "monitor/schedule/swept_bounds.hpp"
 
 namespace clearance {
@@ -61,7 +62,8 @@ struct SensorFrame {
   double pose_error = 0.0;           // m: no element is farther from its exact place in the world
   // Frames of the same content are the same to the bit. 0: not known.
   std::uint64_t content = 0;
-  Carrier carrier = {};  // what has placed it: while that is unknown, so is what the frame shows
+  Carrier carrier = {};    // what has placed it: while that is unknown, so is what the frame shows
+  RobotsSeen robots = {};  // by a sensor that is a witness
 };
 
 // The part of a pair's model error that one source has, m (config/scene/stated_errors.hpp).
