@@ -8,6 +8,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <optional>
 #include <string>
 #include <thread>
@@ -30,6 +31,7 @@
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/loop/summary.hpp"
+#include "monitor/recording/given_joints.hpp"
 #include "tools/rendering/person.hpp"
 #include "tools/robot/camera_truth.hpp"
 #include "tools/robot/joint_log_motion.hpp"
@@ -64,7 +66,8 @@ constexpr std::uint64_t kFollowEvery = 64;  // batches between two looks at the 
 
 struct Arguments {
   CellArguments cell;
-  std::string joints;  // a log; empty: sweep
+  std::string joints;            // a log; empty: sweep
+  std::vector<std::string> off;  // NAME=OFFSET
   double swing = JointSweep::kUsualShare;
   double rate_hz = 1000.0;
   double seconds = 0.0;
@@ -128,8 +131,8 @@ void add_camera_options(CommandLine& line, Arguments& arguments) {
       {"--person-speed", &arguments.person_speed, "Of walking, m/s", number_in(0.05, 5.0),
        with_default},
       {"--truth", &arguments.truth,
-       "Read the reports too, and compare the bounds of published pairs with a camera with the "
-       "distance of the surface that the camera truly saw",
+       "Read the reports too, and compare the bounds of published pairs with the truth: with a "
+       "camera, the distance of the surface that it truly saw",
        rule},
   });
 }
@@ -140,6 +143,9 @@ void add_options(CommandLine& line, Arguments& arguments) {
       {"--joints", &arguments.joints,
        "Robots follow this CSV: t_ns, and a column a joint, rad or m; plain or gzip. Otherwise "
        "every joint swings through its range"},
+      {"--off", &arguments.off,
+       "NAME=OFFSET, rad or m: a joint whose true position, which cameras and --truth see, is "
+       "this much more than the one that is sent; repeatable"},
       {"--swing", &arguments.swing,
        "Share of its range through which every joint swings, without --joints", number_in(0.0, 1.0),
        shown()},
@@ -255,6 +261,26 @@ class Cameras {
   std::optional<SimulatedCameras> cameras_;  // calls the above
 };
 
+// The joints as they are, which is not as they are sent.
+JointMotion true_motion(const Cell& cell, const Arguments& arguments, const JointMotion& sent) {
+  std::map<std::string, double> off;
+  static_cast<void>(read_joint_positions(arguments.off, off));  // run() has refused others
+  std::vector<double> by_variable;
+  for (const JointVariable& variable : cell.scene.variables)
+    by_variable.push_back(off.contains(variable.name) ? off[variable.name] : 0.0);
+  return [sent, by_variable](double t_s, std::vector<JointSample>& joints) {
+    sent(t_s, joints);
+    for (JointSample& joint : joints) joint.position += by_variable[joint.variable];
+  };
+}
+
+// Says what is wrong with the offsets of joints, or nothing.
+std::string fault_of_offsets(const Cell& cell, const Arguments& arguments) {
+  std::map<std::string, double> off;
+  if (std::string fault = read_joint_positions(arguments.off, off); !fault.empty()) return fault;
+  return GivenJoints(cell.scene, off).error();
+}
+
 int run_robot(const Cell& cell, const Arguments& arguments, JointMotion motion,
               StopSignal& signal) {
   use_precise_timers();
@@ -276,7 +302,7 @@ int run_robot(const Cell& cell, const Arguments& arguments, JointMotion motion,
   log_text(LogLevel::kInfo,
            fmt::format("source '{}' sends {} at {} Hz on {}", arguments.robot.source,
                        inputs_of(robot), arguments.rate_hz, connection.where()));
-  Cameras cameras(cell, connection, arguments, motion, time);
+  Cameras cameras(cell, connection, arguments, true_motion(cell, arguments, motion), time);
 
   std::atomic<bool> stop{false}, done{false};
   Histogram lateness;
@@ -312,6 +338,10 @@ int run(int argc, char** argv, StopSignal& signal) {
         "objects move\n",
         arguments.cell.name());
     return kBadCell;
+  }
+  if (const std::string fault = fault_of_offsets(*cell, arguments); !fault.empty()) {
+    print(stderr, "clearance-robot: --off: {}\n", fault);
+    return kUsage;
   }
   if (arguments.joints.empty()) {
     return run_robot(

@@ -49,10 +49,10 @@ class CameraTruth {
   };
   // The findings for one pair.
   struct Found {
-    std::uint64_t compared = 0, above = 0;
-    double least = kInfinity;   // true distance, m
-    double worst = -kInfinity;  // lower less truth, m
-    std::vector<float> gaps;    // truth less lower, m
+    std::uint64_t compared = 0, above = 0;  // `above`: the truth is outside of the bounds
+    double least = kInfinity;               // true distance, m
+    double worst = -kInfinity;              // by how much, at most, m
+    std::vector<float> gaps;                // truth less lower, m
   };
   // A part of a robot, and the thickness of the shell around it that may have been left out.
   struct OwnPart {
@@ -66,6 +66,8 @@ class CameraTruth {
 
   void run();
   void compare(std::uint32_t sensor, const clearance_msg_Distances& report);
+  // Pairs of two bodies, at the time of the joints that the report used.
+  void compare_bodies(const clearance_msg_Distances& report);
   void compare(const clearance_msg_PairDistance& pair, std::int64_t body_ns,
                const std::vector<Vec3>& points);
   [[nodiscard]] std::optional<Frame> frame_of(std::uint32_t sensor, std::int64_t stamp_ns);
