@@ -128,6 +128,12 @@ void add_expectations(CommandLine& line, CheckArguments& arguments) {
        "first one in which all objects are known and on time",
        number_in(0.0, 1.0)},
       {"--expect-no-zone", &arguments.expect_no_zone, "This zone is never active; repeatable"},
+      {"--errors",
+       &arguments.errors,
+       "The poses of this object, as a tracker sends them, are those of this link, which joints "
+       "place: compare the two, and fail if the errors that the cell states do not explain the "
+       "difference of their origins; repeatable",
+       {.value_name = "OBJECT=LINK"}},
   });
 }
 

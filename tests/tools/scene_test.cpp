@@ -284,5 +284,37 @@ TEST_F(SceneProgram, ComparesItsProposalWithAnSrdfAndWritesItForACell) {
       << text;
 }
 
+// A cell of the chain, whose joints are uncertain, and a post.
+std::string uncertain_chain(const std::string& joints) {
+  return "name: chain\nunits: {length: m, angle: rad}\nrobots: [{name: chain, urdf: chain.urdf}]\n"
+         "objects: [{name: post, fixed: true, sphere: {radius: 0.1}, pose: {xyz: [2, 0, 0]}}]\n"
+         "pairs: [{between: [chain, post]}]\nerrors: {joints: {position: " +
+         joints + ", translation: 0.001}}\n";
+}
+
+TEST_F(SceneProgram, ListsWhatEachJointAddsToThePairsBounds) {
+  std::ofstream(directory_ / "chain.urdf") << chain_urdf();
+  std::ofstream(directory_ / "cell.yaml") << uncertain_chain("0.01");
+  EXPECT_EQ(run({"errors", file("cell.yaml"), "--joint", "j=0.5"}), 0) << output_;
+  EXPECT_NE(output_.find("c - post"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("1.00 the joint 'k'"), std::string::npos) << output_;
+  EXPECT_EQ(run({"errors", file("cell.yaml"), "--joint", "jj=0.5"}), 1);
+  EXPECT_NE(output_.find("jj"), std::string::npos) << output_;
+}
+
+TEST_F(SceneProgram, FailsWhereStatedErrorsDoNotExplainMeasuredPlaces) {
+  std::ofstream(directory_ / "chain.urdf") << chain_urdf();
+  std::ofstream(directory_ / "cell.yaml") << uncertain_chain("0.01");
+  std::ofstream(directory_ / "near.csv") << "j,k,x,y,z\n0.1,0.2,0.0015,0,0\n0.2,0,0,-0.0005,0\n";
+  std::ofstream(directory_ / "far.csv") << "j,k,x,y,z\n0.1,0.2,0.0025,0,0\n";
+  const std::string cell = file("cell.yaml");
+  EXPECT_EQ(run({"errors", cell, "--measured", file("near.csv"), "--link", "c"}), 0) << output_;
+  EXPECT_NE(output_.find("2 places"), std::string::npos) << output_;
+  EXPECT_EQ(run({"errors", cell, "--measured", file("far.csv"), "--link", "c"}), 1) << output_;
+  EXPECT_NE(output_.find("1.25 times"), std::string::npos) << output_;
+  EXPECT_EQ(run({"errors", cell, "--measured", file("far.csv"), "--link", "d"}), 1) << output_;
+  EXPECT_EQ(run({"errors", cell, "--measured", file("far.csv")}), 2) << output_;
+}
+
 }  // namespace
 }  // namespace clearance

@@ -54,6 +54,7 @@ struct CheckArguments {
   std::vector<std::string> between;  // A,B or a zone, with =METRES or the distance above
   double allow_unknown = 0.0;        // share of ticks
   std::vector<std::string> expect_no_zone;
+  std::vector<std::string> errors;  // OBJECT=LINK
 
   [[nodiscard]] const std::string& recording() const { return span.recording(); }
 };

@@ -15,6 +15,7 @@
 #include "monitor/recording/reader.hpp"
 #include "monitor/recording/recorded_cell.hpp"
 #include "monitor/recording/robot_description.hpp"
+#include "monitor/replay/explained_places.hpp"
 #include "monitor/replay/offline_replay.hpp"
 #include "monitor/replay/reference_check.hpp"
 #include "monitor/replay/report_csv.hpp"
@@ -182,6 +183,59 @@ class Outputs {
   bool begun_ = false;
 };
 
+// Compares where trackers see links with where joints place them.
+class TrackedLinks {
+ public:
+  // Returns what is wrong with the texts, or nothing. The cell must outlive this.
+  std::string read(const std::vector<std::string>& texts, const Scene& scene) {
+    for (const std::string& text : texts) {
+      const std::size_t equals = text.find('=');
+      const std::string object = text.substr(0, equals);
+      const auto at = std::ranges::find(scene.objects, object, &Object::name);
+      if (equals == std::string::npos || at == scene.objects.end())
+        return fmt::format("--errors {}: expected OBJECT=LINK with an object of the cell", text);
+      const auto link = link_by_name(scene, text.substr(equals + 1));
+      if (const auto* fault = std::get_if<std::string>(&link))
+        return fmt::format("--errors {}: {}", text, *fault);
+      tracked_.push_back({static_cast<std::uint32_t>(at - scene.objects.begin()), 0,
+                          ExplainedPlaces(scene, std::get<LinkByName>(link))});
+    }
+    return {};
+  }
+  // Each new pose counts, at most one in 10 ms.
+  void add(const Monitor& monitor) {
+    constexpr std::int64_t kApartNs = 10'000'000;
+    for (auto& [object, stamp_ns, places] : tracked_) {
+      const PresentPose at = monitor.present_pose(object);
+      const std::int64_t now_ns = monitor.stamp_ns(object);
+      if (at.state != PresentPose::State::kUsable || now_ns < stamp_ns + kApartNs) continue;
+      if (places.add(monitor, at.world_from_body.position, object)) stamp_ns = now_ns;
+    }
+  }
+  // Prints what was found; false: the stated errors do not explain all, or nothing was compared.
+  [[nodiscard]] bool tell() const {
+    bool explained = true;
+    for (const auto& [object, stamp_ns, places] : tracked_) {
+      if (places.size() == 0) {
+        say("--errors: the object and the link were never known at once");
+        explained = false;
+        continue;
+      }
+      print(stdout, "{}", places.text());
+      explained = explained && places.factor() <= 1.0;
+    }
+    return explained;
+  }
+
+ private:
+  struct Tracked {
+    std::uint32_t object;
+    std::int64_t stamp_ns;  // of the last pose that counted
+    ExplainedPlaces places;
+  };
+  std::vector<Tracked> tracked_;
+};
+
 // Closes or removes the outputs of a finished replay, and returns the exit code.
 int finish(const OfflineReplay& replay, Outputs& outputs) {
   bool written = true;
@@ -217,6 +271,11 @@ int replay_in(const Cell& cell, const CheckArguments& arguments,
     say(wrong);
     return kUsage;
   }
+  TrackedLinks tracked;
+  if (const auto wrong = tracked.read(arguments.errors, cell.scene); !wrong.empty()) {
+    say(wrong);
+    return kUsage;
+  }
   Outputs outputs(arguments, cell);
   if (!outputs.ok()) return kFailed;
 
@@ -227,14 +286,18 @@ int replay_in(const Cell& cell, const CheckArguments& arguments,
   options.stop = [&stop] { return stop.wait(0); };
   const auto started = std::chrono::steady_clock::now();
   const OfflineReplay replay =
-      replay_offline(cell, arguments.recording(), options,
-                     [&outputs](const ReplayedTick& tick) { outputs.add(tick); });
+      replay_offline(cell, arguments.recording(), options, [&](const ReplayedTick& tick) {
+        outputs.add(tick);
+        tracked.add(tick.monitor);
+      });
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - started;
   bar.finish();
   print(stderr, "{}", replay.text());
   if (!replay.error.empty()) return kFailed;
   print_summary(replay, arguments, elapsed.count());
-  return finish(replay, outputs);
+  const bool explained = tracked.tell();
+  const int finished = finish(replay, outputs);
+  return finished == kOk && !explained ? kFailed : finished;
 }
 
 bool are_one_file(const std::filesystem::path& first, const std::filesystem::path& second) {

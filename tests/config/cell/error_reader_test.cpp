@@ -18,7 +18,7 @@ using testing::HasSubstr;
 constexpr double kDegree = std::numbers::pi / 180.0;
 
 // A robot on a table, a cart, and a vice that is attached to the table.
-std::string cell_with(const std::string& errors) {
+std::string uncertain_cell(const std::string& errors) {
   return "name: test\nunits: {length: mm, angle: deg}\nrobots: [{name: arm, urdf: scara.urdf, "
          "base: "
          "{on: table}}]\n"
@@ -32,17 +32,18 @@ std::string cell_with(const std::string& errors) {
 }
 
 template <class Read>
-auto with_urdf(const std::string& errors, Read&& read) {
+auto with_scara(const std::string& errors, Read&& read) {
   const test::ScratchFolder folder;
   test::write_text(folder / "scara.urdf", test::kScaraUrdf);
-  return read(cell_with(errors), folder / "cell.yaml");
+  return read(uncertain_cell(errors), folder / "cell.yaml");
 }
-Scene scene_with(const std::string& errors) {
-  return with_urdf(errors, [](const auto& text, const auto& file) { return scene_of(text, file); });
+Scene uncertain_scene(const std::string& errors) {
+  return with_scara(errors,
+                    [](const auto& text, const auto& file) { return scene_of(text, file); });
 }
-std::string mistakes_of(const std::string& errors) {
-  return with_urdf(errors,
-                   [](const auto& text, const auto& file) { return errors_of(text, file); });
+std::string mistakes_in(const std::string& errors) {
+  return with_scara(errors,
+                    [](const auto& text, const auto& file) { return errors_of(text, file); });
 }
 
 const Object& object(const Scene& scene, const std::string& name) {
@@ -53,7 +54,7 @@ const Object& object(const Scene& scene, const std::string& name) {
 }
 
 TEST(StatedErrorKeys, AreDefaultsByKindAndExceptionsByName) {
-  const Scene scene = scene_with(
+  const Scene scene = uncertain_scene(
       "errors:\n  joints: {position: 0.1, slide: 0.2, translation: 0.3, rotation: 0.4}\n"
       "  bases: {translation: 1}\n  fixed: {translation: 2}\n  poses: {translation: 3, rotation: "
       "1}\n"
@@ -74,35 +75,36 @@ TEST(StatedErrorKeys, AreDefaultsByKindAndExceptionsByName) {
 }
 
 TEST(StatedErrorKeys, AreRefusedWithTheirPlaceAndAHint) {
-  EXPECT_THAT(mistakes_of("errors: {joint: {position: 1}}\n"), HasSubstr("unknown key 'joint'"));
-  EXPECT_THAT(mistakes_of("errors: {joints: {position: -1}}\n"), HasSubstr("from 0 on"));
-  EXPECT_THAT(mistakes_of("errors: {fixed: {translation: -1}}\n"), HasSubstr("translation"));
-  EXPECT_THAT(mistakes_of("errors: {except: [{joint: elbo, position: 1}]}\n"),
+  EXPECT_THAT(mistakes_in("errors: {joint: {position: 1}}\n"), HasSubstr("unknown key 'joint'"));
+  EXPECT_THAT(mistakes_in("errors: {joints: {position: -1}}\n"), HasSubstr("from 0 on"));
+  EXPECT_THAT(mistakes_in("errors: {fixed: {translation: -1}}\n"), HasSubstr("translation"));
+  EXPECT_THAT(mistakes_in("errors: {except: [{joint: elbo, position: 1}]}\n"),
               HasSubstr("did you mean 'elbow'"));
-  EXPECT_THAT(mistakes_of("errors: {except: [{object: upper, translation: 1}]}\n"),
+  EXPECT_THAT(mistakes_in("errors: {except: [{object: upper, translation: 1}]}\n"),
               HasSubstr("the joint that carries the link"));
-  EXPECT_THAT(mistakes_of("errors: {except: [{base: arm, object: cart}]}\n"), HasSubstr("several"));
-  EXPECT_THAT(mistakes_of("errors: {joints: {position: 9}}\n"), HasSubstr("add up to"));
+  EXPECT_THAT(mistakes_in("errors: {except: [{base: arm, object: cart}]}\n"), HasSubstr("several"));
+  EXPECT_THAT(mistakes_in("errors: {joints: {position: 9}}\n"), HasSubstr("add up to"));
 }
 
 TEST(StatedErrorKeys, OneLineNamesTheKindsThatAreLeftAtZero) {
-  EXPECT_EQ(unstated_errors(scene_with("")), "");
-  const std::string left = unstated_errors(scene_with("errors: {joints: {position: 0.1}}\n"));
+  EXPECT_EQ(unstated_errors(uncertain_scene("")), "");
+  const std::string left = unstated_errors(uncertain_scene("errors: {joints: {position: 0.1}}\n"));
   for (const char* kind : {"frames of joints", "bases", "fixed objects", "poses", "attached"})
     EXPECT_THAT(left, HasSubstr(kind));
   EXPECT_THAT(left, testing::Not(HasSubstr("positions of joints")));
   EXPECT_THAT(left, testing::Not(HasSubstr("mounts"))) << "there is no sensor";
 }
 
-std::uint32_t index_of(const Scene& scene, const std::string& name) {
+std::uint32_t number_of(const Scene& scene, const std::string& name) {
   return static_cast<std::uint32_t>(&object(scene, name) - scene.objects.data());
 }
 
 TEST(StatedErrors, WhatCarriesBothBodiesDoesNotCount) {
-  const Scene scene = scene_with("errors: {fixed: {translation: 7}, attached: {translation: 4}}\n");
+  const Scene scene =
+      uncertain_scene("errors: {fixed: {translation: 7}, attached: {translation: 4}}\n");
   const StatedErrors errors(scene);
   const auto largest = [&](const char* a, const char* b) {
-    return errors.largest(index_of(scene, a), index_of(scene, b));
+    return errors.largest(number_of(scene, a), number_of(scene, b));
   };
   EXPECT_NEAR(largest("upper", "cart"), 7e-3, 1e-9) << "the table carries the arm";
   EXPECT_EQ(largest("upper", "table"), 0.0);
@@ -113,14 +115,14 @@ TEST(StatedErrors, WhatCarriesBothBodiesDoesNotCount) {
 }
 
 TEST(StatedErrors, OfAJointReachAsFarAsTheLinksBehindIt) {
-  const Scene scene = scene_with("errors: {joints: {position: 0.1}}\n");
+  const Scene scene = uncertain_scene("errors: {joints: {position: 0.1}}\n");
   const StatedErrors errors(scene);
   const double angle = 0.1 * kDegree;
-  const double elbow = errors.largest(index_of(scene, "upper"), index_of(scene, "lower"));
+  const double elbow = errors.largest(number_of(scene, "upper"), number_of(scene, "lower"));
   // The lower link's box reaches 0.9 m and half its width.
   EXPECT_GT(elbow, angle * 0.9);
   EXPECT_LT(elbow, angle * 1.01);
-  const double both = errors.largest(index_of(scene, "cart"), index_of(scene, "lower"));
+  const double both = errors.largest(number_of(scene, "cart"), number_of(scene, "lower"));
   EXPECT_GT(both, angle * (1.9 + 0.9));
   EXPECT_LT(both, angle * (1.9 + 1.01) * 1.01);
 }
