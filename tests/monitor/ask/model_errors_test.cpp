@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "core/shapes.hpp"
 #include "tests/monitor/ask/scara_questions.hpp"
 #include "tests/monitor/tick/fresh_distance.hpp"
 #include "tests/monitor/tick/true_bodies.hpp"
@@ -15,7 +16,7 @@ namespace {
 
 using test::answered, test::kPin, test::scara_beside, test::swing;
 
-const std::string kErrors =
+const std::string kScaraErrors =
     "errors: {joints: {position: 0.002, translation: 0.001}, bases: {translation: 0.002}, fixed: "
     "{translation: 0.003}}\n";
 
@@ -32,7 +33,7 @@ double distance_at(const Scene& scene, double shoulder, const test::DrawnErrors&
 }
 
 TEST(QuestionsWithModelErrors, NoMachineComesNearerThanTheAnswer) {
-  const Scene scene = scara_beside(kPin, kErrors);
+  const Scene scene = scara_beside(kPin, kScaraErrors);
   Question question = swing(-1.0, 0.6);
   question.margins = {0.12};
   const Answer answer = answered(scene, question);
@@ -55,14 +56,14 @@ TEST(QuestionsWithModelErrors, AMarginIsOnlyFreeForAllMachines) {
   Question question = swing(-1.0, 0.6);
   question.margins = {0.145};
   EXPECT_EQ(answered(scara_beside(kPin), question).margins[0].verdict, Verdict::kFree);
-  EXPECT_NE(answered(scara_beside(kPin, kErrors), question).margins[0].verdict, Verdict::kFree);
+  EXPECT_NE(answered(scara_beside(kPin, kScaraErrors), question).margins[0].verdict,
+            Verdict::kFree);
 }
 
 TEST(QuestionsWithModelErrors, APayloadHasTheErrorOfAttachedObjects) {
   Question question = swing(-1.0, 0.6);
-  question.payloads.push_back({.name = "part",
-                               .shape = std::get<ConvexBody>(point(Vec3::Zero(), 0.06)),
-                               .link = "finger"});
+  question.payloads.push_back(
+      {.name = "part", .shape = std::get<ConvexBody>(point(Vec3::Zero(), 0.06)), .link = "finger"});
   const double without = answered(scara_beside(kPin), question).lower;
   const double with =
       answered(scara_beside(kPin, "errors: {attached: {translation: 0.007}}\n"), question).lower;

@@ -169,7 +169,7 @@ INSTANTIATE_TEST_SUITE_P(
                     Form{"PointsWithASpacing", "points: /cam/points, spacing: 0.0167", false, true},
                     Form{"PointsWithNeighbours", "points: /cam/points, spacing: neighbours", false,
                          true}),
-    [](const auto& info) { return info.param.name; });
+    [](const auto& form) { return form.param.name; });
 
 // The texts of the failures of a bag with joints, one image on /cam/depth and, if it is said, the
 // image's CameraInfo.
