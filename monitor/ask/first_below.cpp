@@ -176,8 +176,8 @@ void MotionSearch::find_first(const Stretch& stretch, const OpenList& list,
         near = !below && lower >= limit - question_->margin_tolerance &&
                upper <= limit + question_->margin_tolerance;
         // No division helps where the distance at the middle itself is not known well enough.
-        unclear = !below && rounded_down(found.lower - nearing) < limit &&
-                  found.upper - found.lower > question_->margin_tolerance &&
+        unclear = !below && rounded_down(found.lower - bundle.model_error - nearing) < limit &&
+                  found.upper - found.lower + bundle.model_error > question_->margin_tolerance &&
                   stretch.to - stretch.from <= kUnclear * duration_;
       }
       if (below && (!found_ || middle < answer.below_at)) {

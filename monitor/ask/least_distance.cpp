@@ -46,9 +46,11 @@ void MotionSearch::seed_upper(const OpenList& all) noexcept {
 
 // Whether a division raises the pair's lower bound by the tolerance at most: the distance at the
 // middle itself is not known better. Part of a frame that was cropped is such a case.
-bool MotionSearch::is_as_good_as_at_middle(double lower, const PairAtMiddle& found,
+bool MotionSearch::is_as_good_as_at_middle(double lower, double model_error,
+                                           const PairAtMiddle& found,
                                            const Pair& at) const noexcept {
-  return lower >= found.lower - at.approach.nearing.until_middle - question_->tolerance;
+  return lower >=
+         found.lower - model_error - at.approach.nearing.until_middle - question_->tolerance;
 }
 
 void MotionSearch::minimise(const Stretch& stretch, const OpenList& list, double known) noexcept {
@@ -62,7 +64,7 @@ void MotionSearch::minimise(const Stretch& stretch, const OpenList& list, double
   place(stretch, middle);
   const bool divides = can_divide(stretch, middle);
   const auto enough = [&] {
-    return std::min(question_->far_enough, answer_->upper - question_->tolerance);
+    return std::min(question_->far_enough, reached_ - question_->tolerance);
   };
   double least = kInfinity, closing = 0.0;
   OpenList left{list.end, list.end};
@@ -74,14 +76,14 @@ void MotionSearch::minimise(const Stretch& stretch, const OpenList& list, double
     for (std::uint32_t i = 0; i < open_[k].count; ++i) {
       const std::uint32_t pair = order[i];
       const Pair at = pair_at(pair, motion);
-      const double apart = gap(at, pair, rounded_up(answer_->upper + at.loss));
+      const double apart = gap(at, pair, rounded_up(reached_ + at.loss));
       double lower = rounded_down(apart - at.loss);
-      if (lower >= answer_->upper) continue;  // it cannot lower the least distance
+      if (lower >= reached_) continue;  // it cannot lower the least distance
       // No distance is negative, so a pair in contact is decided as well.
       bool decided = std::max(0.0, lower) >= enough();
       const double size = at.tip.sphere_in_world.radius;
-      const bool worth = apart < answer_->upper ||
-                         apart + size >= enough() + kShareAlongNormal * at.loss || !divides;
+      const bool worth =
+          apart < reached_ || apart + size >= enough() + kShareAlongNormal * at.loss || !divides;
       double speed = 0.0;
       if (!decided && worth) {
         const PairAtMiddle found = query(at, pair);
@@ -90,7 +92,8 @@ void MotionSearch::minimise(const Stretch& stretch, const OpenList& list, double
         lower = std::max(lower, lower_over(found, at.base, at.tip, bundle.keeps_direction, motion,
                                            at.approach, enough()));
         speed = closing_speed(found, at.tip, motion, at.approach);
-        decided = std::max(0.0, lower) >= enough() || is_as_good_as_at_middle(lower, found, at);
+        decided = std::max(0.0, lower) >= enough() ||
+                  is_as_good_as_at_middle(lower, bundle.model_error, found, at);
       }
       if (decided || !divides) {
         closed_lower_ = std::min(closed_lower_, lower);

@@ -104,7 +104,7 @@ void MotionSearch::begin(const Question& question, Answer& answer) {
   answer.profile = std::move(profile);
   answer.profile.clear();
   answer.margins.assign(question.margins.size() + question.margins_between.size(), {});
-  answer.upper = kInfinity;
+  answer.upper = reached_ = kInfinity;
   duration_ = posture_.trajectory().end() - posture_.trajectory().begin();
   pairs_.forget();
   const OpenList all = all_pairs();
@@ -193,6 +193,8 @@ void MotionSearch::note_pair(std::uint32_t pair, std::uint32_t& first,
 
 void MotionSearch::note_upper(const PairAtMiddle& found, double upper, double at,
                               std::uint32_t pair) noexcept {
+  const double open = 2.0 * bundle_of(pair).model_error;
+  reached_ = std::min(reached_, open == 0.0 ? upper : rounded_up(upper - open));
   if (!(upper < answer_->upper)) return;
   answer_->upper = upper;
   answer_->time = at;

@@ -53,10 +53,12 @@ class MotionSearch {
     Stretch stretch;
     ProfilePoint point;
     bool divides = true;
+    double stated = 0.0;  // m: the part of its width that stated errors make
+    [[nodiscard]] double width() const noexcept { return point.upper - point.lower - stated; }
     // The widest piece is first in the heap, and among equally wide ones the earliest.
     friend bool operator<(const Piece& a, const Piece& b) noexcept {
-      const double wide_a = a.divides ? a.point.upper - a.point.lower : -1.0;
-      const double wide_b = b.divides ? b.point.upper - b.point.lower : -1.0;
+      const double wide_a = a.divides ? a.width() : -1.0;
+      const double wide_b = b.divides ? b.width() : -1.0;
       return wide_a != wide_b ? wide_a < wide_b : a.point.from > b.point.from;
     }
   };
@@ -81,6 +83,9 @@ class MotionSearch {
   [[nodiscard]] Pair pair_at(std::uint32_t pair, const TipMotion& motion) noexcept;
   [[nodiscard]] double gap(const Pair& at, std::uint32_t pair, double enough) const noexcept;
   [[nodiscard]] PairAtMiddle query(const Pair& at, std::uint32_t pair) noexcept;
+  [[nodiscard]] const Bundle& bundle_of(std::uint32_t pair) const noexcept {
+    return pairs_.bundles()[pairs_.pairs()[pair].bundle];
+  }
   void note_upper(const PairAtMiddle& found, double upper, double at, std::uint32_t pair) noexcept;
   void note_pair(std::uint32_t pair, std::uint32_t& first, std::uint32_t& second) const noexcept;
   [[nodiscard]] bool can_divide(const Stretch& stretch, double middle) const noexcept;
@@ -91,7 +96,8 @@ class MotionSearch {
   // The least distance (least_distance.cpp).
   void find_least();
   void seed_upper(const OpenList& all) noexcept;
-  [[nodiscard]] bool is_as_good_as_at_middle(double lower, const PairAtMiddle& found,
+  [[nodiscard]] bool is_as_good_as_at_middle(double lower, double model_error,
+                                             const PairAtMiddle& found,
                                              const Pair& at) const noexcept;
   void minimise(const Stretch& stretch, const OpenList& list, double known) noexcept;
 
@@ -155,9 +161,12 @@ class MotionSearch {
   Answer* answer_ = nullptr;
   double duration_ = 0.0;
   double closed_lower_ = kInfinity;  // of all stretches that are decided
-  bool found_ = false;               // an instant below the margin is known
-  bool uncertain_ = false;           // a stretch is known that is not proven to be above
-  double proven_until_ = 0.0;        // s: before this, a larger margin was proven
+  // The least lower bound that an instant so far allows at all, m. It is below the upper one where
+  // the model has stated errors.
+  double reached_ = kInfinity;
+  bool found_ = false;         // an instant below the margin is known
+  bool uncertain_ = false;     // a stretch is known that is not proven to be above
+  double proven_until_ = 0.0;  // s: before this, a larger margin was proven
 };
 
 }  // namespace clearance

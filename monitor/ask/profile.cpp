@@ -36,7 +36,7 @@ void MotionSearch::make_profile(const ProfileRequest& request) {
   bound_piece(pieces_.back());
   while (pieces_.size() < request.most_points) {
     const Piece& widest = pieces_.front();
-    if (!widest.divides || widest.point.upper - widest.point.lower <= request.tolerance) break;
+    if (!widest.divides || widest.width() <= request.tolerance) break;
     if (is_exhausted()) {
       answer_->within_work_limit = false;
       break;
@@ -67,6 +67,7 @@ void MotionSearch::bound_piece(Piece& piece) noexcept {
   point.from = stretch.from;
   point.to = stretch.to;
   piece.divides = can_divide(stretch, middle);
+  piece.stated = 0.0;
   double lower = kInfinity, upper = kInfinity, closest = kInfinity;
   const auto look_at = [&](std::uint32_t pair, const Bundle& bundle, const TipMotion& motion) {
     const Pair at = pair_at(pair, motion);
@@ -74,6 +75,7 @@ void MotionSearch::bound_piece(Piece& piece) noexcept {
     lower = std::min(lower, std::max(rounded_down(gaps_[pair] - at.loss),
                                      lower_over(found, at.base, at.tip, bundle.keeps_direction,
                                                 motion, at.approach, kInfinity)));
+    piece.stated = std::max(piece.stated, 2.0 * bundle.model_error);
     upper = std::min(upper, upper_over(found, at.tip, motion, at.approach));
     const double now = std::max(0.0, found.upper + motion.error - at.approach.nearing.until_middle);
     if (now < closest) {

@@ -124,7 +124,9 @@ void MotionSearch::scale(const Stretch& stretch, std::size_t count, double known
           lower_over(found, at.base, at.tip, bundle.keeps_direction, motion, approach, kInfinity);
       lower = std::max(lower, factor_of(terms, rounded_down(over - separated.margins), fastest));
       const double slowest = largest_tip_speed({.twist = motion.twist, .nearing = {}}, radius);
-      const double now = rounded_up(found.upper + motion.error - separated.margins);
+      // With stated errors, no larger factor is certain.
+      const double now =
+          rounded_up(found.upper + motion.error - 2.0 * bundle.model_error - separated.margins);
       const double upper = rounded_up(rounded_up(factor_of(terms, now, (1.0 - 0x1p-40) * slowest)));
       if (upper < scaling.factor_above) {
         scaling.factor_above = upper;

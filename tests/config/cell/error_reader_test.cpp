@@ -27,7 +27,8 @@ std::string uncertain_cell(const std::string& errors) {
          "  - {name: vice, box: {size: [90, 90, 50]}, attached: {to: table, pose: {xyz: [0, 300, "
          "50]}}}\n"
          "  - {name: cart, max_speed: 1, sphere: {radius: 90}}\n"
-         "pairs: [{between: [arm, cart]}, {between: [cart, vice]}, {between: [arm, arm]}]\n" +
+         "pairs: [{between: [arm, cart]}, {between: [cart, vice]}, {between: [arm, arm]}, "
+         "{between: [cart, table]}]\n" +
          errors;
 }
 

@@ -49,7 +49,7 @@ TEST(QuestionsWithModelErrors, NoMachineComesNearerThanTheAnswer) {
     ASSERT_LE(answer.lower, distance + 1e-9);
     nearest = std::min(nearest, distance);
   }
-  EXPECT_LT(nearest, exact.lower - 0.004) << "the machines differ from the model";
+  EXPECT_LT(nearest, 0.147) << "the model comes to 0.15 m";
 }
 
 TEST(QuestionsWithModelErrors, AMarginIsOnlyFreeForAllMachines) {
@@ -62,8 +62,11 @@ TEST(QuestionsWithModelErrors, AMarginIsOnlyFreeForAllMachines) {
 
 TEST(QuestionsWithModelErrors, APayloadHasTheErrorOfAttachedObjects) {
   Question question = swing(-1.0, 0.6);
-  question.payloads.push_back(
-      {.name = "part", .shape = std::get<ConvexBody>(point(Vec3::Zero(), 0.06)), .link = "finger"});
+  question.payloads.push_back({.name = "part",
+                               .shape = std::get<ConvexBody>(point(Vec3::Zero(), 0.06)),
+                               .link = "finger",
+                               .link_from_object = {},
+                               .touch = {}});
   const double without = answered(scara_beside(kPin), question).lower;
   const double with =
       answered(scara_beside(kPin, "errors: {attached: {translation: 0.007}}\n"), question).lower;

@@ -23,11 +23,10 @@
 namespace clearance {
 namespace {
 
-constexpr std::uint32_t kColumns = 320, kRows = 240;
-constexpr double kFocal = 260.0;
-constexpr std::int64_t kFrame = test::camera::kFrame, kStart = test::camera::kStart;
+constexpr std::uint32_t kEyeColumns = 320, kEyeRows = 240;
+constexpr double kEyeFocal = 260.0;
 
-const std::string kEye =
+const std::string kWitnessEye =
     "sensors:\n  - {name: eye, depth_image: /cam/image, size: [320, 240], depth_error: {constant: "
     "0.004, quadratic: 0.001}, range: [0.3, 6], witness: true, mount: {pose: {xyz: [1.9, 0, 1.5], "
     "rpy: [-1.8, 0, 1.5708]}}}\n";
@@ -40,21 +39,21 @@ Cell two_arms_and_eye(const std::string& errors = "") {
   const std::string pairs = "pairs:\n";
   text.insert(text.find(pairs) + pairs.size(),
               "  - between: [left, eye]\n  - between: [right, eye]\n");
-  return read_good(text + kEye + errors, file);
+  return read_good(text + kWitnessEye + errors, file);
 }
 
 // A cell, the machine behind it, and its camera.
-class Watched {
+class WitnessedCell {
  public:
-  explicit Watched(Cell cell, std::uint64_t seed = 1)
+  explicit WitnessedCell(Cell cell, std::uint64_t seed = 1)
       : cell_(std::move(cell)),
         sensors_(cell_, SensorsOptions{.is_log = false}),
         monitor_(cell_.scene),
         random_(seed),
-        renderer_({.width = kColumns,
-                   .height = kRows,
-                   .fx = kFocal,
-                   .fy = kFocal,
+        renderer_({.width = kEyeColumns,
+                   .height = kEyeRows,
+                   .fx = kEyeFocal,
+                   .fy = kEyeFocal,
                    .cx = 159.5,
                    .cy = 119.5}),
         off_(cell_.scene.variables.size(), 0.0) {
@@ -78,7 +77,7 @@ class Watched {
 
   // A picture, and the tick that gets it. Returns the rays that met the robot.
   RaysOfRobot look(std::uint32_t robot) {
-    now_ += kFrame;
+    now_ += test::camera::kFrame;
     ++frame_;
     std::vector<JointSample> joints;
     for (std::uint32_t v = 0; v < positions_.size(); ++v)
@@ -135,15 +134,15 @@ class Watched {
                         .seed = 7},
                        frame_, bytes);
     test::camera::InfoText info;
-    info.width = kColumns;
-    info.height = kRows;
-    info.k = {kFocal, 0, 159.5, 0, kFocal, 119.5, 0, 0, 1};
-    info.p = {kFocal, 0, 159.5, 0, 0, kFocal, 119.5, 0, 0, 0, 1, 0};
+    info.width = kEyeColumns;
+    info.height = kEyeRows;
+    info.k = {kEyeFocal, 0, 159.5, 0, kEyeFocal, 119.5, 0, 0, 1};
+    info.p = {kEyeFocal, 0, 159.5, 0, 0, kEyeFocal, 119.5, 0, 0, 0, 1, 0};
     info.stamp_ns = now_;
     test::camera::ImageText image;
-    image.width = kColumns;
-    image.height = kRows;
-    image.step = 2 * kColumns;
+    image.width = kEyeColumns;
+    image.height = kEyeRows;
+    image.step = 2 * kEyeColumns;
     image.stamp_ns = now_;
     image.data.resize(bytes.size());
     std::memcpy(image.data.data(), bytes.data(), bytes.size());
@@ -164,11 +163,11 @@ class Watched {
   std::vector<double> positions_, off_;
   test::DrawnErrors exact_;
   Vec3 camera_shift_ = Vec3::Zero();
-  std::int64_t now_ = kStart;
+  std::int64_t now_ = test::camera::kStart;
   std::uint64_t frame_ = 0;
 };
 
-std::uint32_t variable(const Cell& cell, const std::string& name) {
+std::uint32_t variable_of(const Cell& cell, const std::string& name) {
   for (std::uint32_t v = 0; v < cell.scene.variables.size(); ++v)
     if (cell.scene.variables[v].name == name) return v;
   ADD_FAILURE() << name;
@@ -176,7 +175,7 @@ std::uint32_t variable(const Cell& cell, const std::string& name) {
 }
 
 TEST(SecondWitness, AgreesWithAMachineThatIsAsStated) {
-  Watched watched(two_arms_and_eye());
+  WitnessedCell watched(two_arms_and_eye());
   for (int i = 0; i < 12; ++i) {
     for (std::size_t v = 0; v < watched.positions().size(); ++v)
       watched.positions()[v] += 0.002 * std::sin(0.3 * i + static_cast<double>(v));
@@ -189,16 +188,23 @@ TEST(SecondWitness, AgreesWithAMachineThatIsAsStated) {
 }
 
 TEST(SecondWitness, SeesALostZeroOfAJointInFivePictures) {
-  Watched watched(two_arms_and_eye());
-  watched.off()[variable(watched.cell(), "left_joint2")] = 0.2;
+  WitnessedCell watched(two_arms_and_eye());
+  watched.off()[variable_of(watched.cell(), "left_joint2")] = -0.2;
   EXPECT_EQ(watched.pictures_until_denied(0), 5);
   EXPECT_FALSE(watched.is_unknown(1)) << "the other arm is where its joints say";
 }
 
+// Something nearer than the robot may stand in front of it.
+TEST(SecondWitness, IsNotSureOfWhatIsNearer) {
+  WitnessedCell watched(two_arms_and_eye());
+  watched.off()[variable_of(watched.cell(), "left_joint2")] = 0.2;
+  EXPECT_EQ(watched.pictures_until_denied(0), 0);
+}
+
 TEST(SecondWitness, TakesARobotBackAfterFivePicturesOfIt) {
-  Watched watched(two_arms_and_eye());
-  const std::uint32_t lift = variable(watched.cell(), "left_joint2");
-  watched.off()[lift] = 0.2;
+  WitnessedCell watched(two_arms_and_eye());
+  const std::uint32_t lift = variable_of(watched.cell(), "left_joint2");
+  watched.off()[lift] = -0.2;
   ASSERT_GT(watched.pictures_until_denied(0), 0);
   watched.off()[lift] = 0.0;
   for (int i = 1; i < 5; ++i) {
@@ -210,16 +216,16 @@ TEST(SecondWitness, TakesARobotBackAfterFivePicturesOfIt) {
 }
 
 TEST(SecondWitness, SeesABumpedCamera) {
-  Watched watched(two_arms_and_eye());
+  WitnessedCell watched(two_arms_and_eye());
   watched.camera_shift() = Vec3(0.0, 0.06, 0.0);
   EXPECT_GT(watched.pictures_until_denied(0), 0);
 }
 
 TEST(SecondWitness, AllowsWhatIsStated) {
-  Watched strict(two_arms_and_eye()),
+  WitnessedCell strict(two_arms_and_eye()),
       allowing(two_arms_and_eye("errors: {joints: {position: 0.02}}\n"));
-  for (Watched* watched : {&strict, &allowing})
-    watched->off()[variable(watched->cell(), "left_joint2")] = 0.02;
+  for (WitnessedCell* watched : {&strict, &allowing})
+    watched->off()[variable_of(watched->cell(), "left_joint2")] = -0.02;
   EXPECT_EQ(allowing.pictures_until_denied(0), 0);
   EXPECT_EQ(allowing.look(0).through, 0u);
   EXPECT_GT(strict.look(0).through, 0u);
