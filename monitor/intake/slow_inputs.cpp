@@ -21,6 +21,13 @@ std::vector<std::int64_t> joint_limits(const Scene& scene) {
   return limits;
 }
 
+void tell_as_slow(Outlet& out, const std::string& inputs, std::int64_t interval_ns,
+                  const std::string& of, std::int64_t age_limit_ns) {
+  out.tell(News(lines::kSlowInput, inputs, 1e9 / static_cast<double>(interval_ns),
+                interval_ns / 1'000'000, of, age_limit_ns / 1'000'000,
+                fitting_age_limit_ms(interval_ns)));
+}
+
 }  // namespace
 
 SlowIntervals::SlowIntervals(const std::vector<std::int64_t>& limits_ns)
@@ -61,9 +68,8 @@ void SlowInputs::note_poses(const PoseBatch& batch, Outlet& out) {
     const auto interval_ns = poses_.note(sample.object, sample.stamp_ns);
     if (!interval_ns) continue;
     const Object& object = scene_->objects[sample.object];
-    out.tell(News(lines::kSlowInput, fmt::format("poses of {}", object.name),
-                  *interval_ns / 1'000'000, object.name, object.age_limit_ns / 1'000'000,
-                  fitting_age_limit_ms(*interval_ns)));
+    tell_as_slow(out, fmt::format("poses of {}", object.name), *interval_ns, object.name,
+                 object.age_limit_ns);
   }
 }
 
@@ -80,9 +86,8 @@ void SlowInputs::note_joints(const PoseBatch& batch, Outlet& out) {
   }
   if (found == 0) return;
   const std::string more = found > 1 ? fmt::format(" and {} more joints", found - 1) : "";
-  out.tell(News(lines::kSlowInput, fmt::format("joint states from '{}'", batch.source.view()),
-                interval_ns / 1'000'000, first->name + more, first->age_limit_ns / 1'000'000,
-                fitting_age_limit_ms(interval_ns)));
+  tell_as_slow(out, fmt::format("joint states from '{}'", batch.source.view()), interval_ns,
+               first->name + more, first->age_limit_ns);
 }
 
 std::int64_t fitting_age_limit_ms(std::int64_t interval_ns) noexcept {

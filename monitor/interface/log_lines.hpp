@@ -99,10 +99,10 @@ inline constexpr LogLine<Text, Text, Text> kSourceRefused{"source-refused", kWar
 inline constexpr LogLine<Text, Count, Count> kOtherRevision{
     "other-revision", kWarn,
     "source '{}' sends poses for scene revision {:016x}, this cell's is {:016x}: not used"};
-inline constexpr LogLine<Text, std::int64_t, Text, std::int64_t, std::int64_t> kSlowInput{
+inline constexpr LogLine<Text, double, std::int64_t, Text, std::int64_t, std::int64_t> kSlowInput{
     "slow-input", kWarn,
-    "{} come every {} ms, and the age limit of {} is {} ms: late again and again, so that zones "
-    "flicker; age_limit_ms of {} would fit"};
+    "{} come at {:.1f} Hz, every {} ms, and the age limit of {} is {} ms: late again and again, so "
+    "that zones flicker; age_limit_ms of {} would fit"};
 inline constexpr LogLine<Text, double, Text> kOtherClock{
     "other-clock", kWarn,
     "{} are stamped {:+.3f} s off the time at which they are sent: by a clock of their own, as of "

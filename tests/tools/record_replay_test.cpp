@@ -348,7 +348,7 @@ TEST_F(RecordReplay, PartitionsWithWildcardsAndLongSourceNamesAreRefused) {
   is_refused(kRobot, {});
   is_refused(kReplay, {"publish"});
   EXPECT_EQ(2, run(kRobot, {path("cell.yaml"), "--source", std::string(33, 'x')}));
-  EXPECT_THAT(output, HasSubstr("33 bytes; expected a name of 1 to 32"));
+  EXPECT_THAT(output, HasSubstr("expected a name of 1 to 32 bytes"));
 }
 
 }  // namespace

@@ -50,7 +50,7 @@ TEST(LogLines, AreWordedAsInTheGoldenFile) {
 }
 
 TEST(LogLines, AreAllInTheList) {
-  const std::string header = content(test::places::sources() + "/monitor/app/log_line.hpp");
+  const std::string header = content(test::places::sources() + "/monitor/interface/log_lines.hpp");
   std::size_t entries = 0;
   for (std::size_t at = 0; (at = header.find("constexpr LogLine<", at)) != std::string::npos;
        ++at) {
