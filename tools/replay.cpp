@@ -171,6 +171,9 @@ void add_expectations(CLI::App& app, CheckArguments& arguments) {
   app.add_option("--expect-no-zone", arguments.expect_no_zone,
                  "This zone is never active; repeatable")
       ->allow_extra_args(false);
+  app.add_option("--junit", arguments.junit,
+                 "Write the result as JUnit's XML for a CI system, with the ticks that were not "
+                 "judged");
   CLI::Option* const evaluate_all =
       app.add_flag("--evaluate-all", arguments.evaluate_all,
                    "Evaluate every pair in every tick, whatever the cell's budget. Otherwise pairs "
