@@ -128,6 +128,8 @@ void add_expectations(CommandLine& line, CheckArguments& arguments) {
        "first one in which all objects are known and on time",
        number_in(0.0, 1.0)},
       {"--expect-no-zone", &arguments.expect_no_zone, "This zone is never active; repeatable"},
+      {"--junit", &arguments.junit,
+       "Write the result as JUnit's XML for a CI system, with the ticks that were not judged"},
       {"--errors",
        &arguments.errors,
        "The poses of this object, as a tracker sends them, are those of this link, which joints "

@@ -69,6 +69,12 @@ Qos ros_qos(const RosType& type, bool reliable, std::int32_t depth) {
 // 1 kHz keeps it, so everything arrives late by that history. This setting makes them ask at once.
 constexpr const char* kAskAtOnce = "<NackDelay>0 ms</NackDelay>";
 
+// All packets leave through one socket. Linux keeps up to 208 KiB for a machine that does not say
+// where it is, for up to 3 s, in the send buffer, which has just that size by default: then no
+// other reader is sent anything. This asks for more, and takes what net.core.wmem_max allows: by
+// default twice as much.
+constexpr const char* kSendBuffer = "<SocketSendBufferSize max=\"8 MiB\"/>";
+
 // The largest sizes of a datagram, and of a fragment of a sample with its headers.
 struct DatagramSizes {
   int message, fragment;
@@ -176,7 +182,8 @@ std::string domain_configuration(const DdsOptions& options) {
       "<MaxMessageSize>{}B</MaxMessageSize><FragmentSize>{}B</FragmentSize></General>"
       "{}{}</Domain></CycloneDDS>",
       interface_xml(options), sizes.message, sizes.fragment,
-      element("Discovery", discovery_xml(options)), element("Internal", kAskAtOnce));
+      element("Discovery", discovery_xml(options)),
+      element("Internal", std::string(kAskAtOnce) + kSendBuffer));
   // The person's own settings for Cyclone come last, so they win.
   if (const char* uri = std::getenv("CYCLONEDDS_URI")) xml += std::string(",") + uri;
   return xml;

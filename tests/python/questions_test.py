@@ -163,6 +163,8 @@ def test_a_daemon_answers_for_where_everything_is_now(daemon, planar):
         here = planar.ask(Question(**SWING, **REST, margins=[0.8]))
         assert (answer.lower, answer.upper, answer.time) == (here.lower, here.upper, here.time)
         assert answer.is_free(0.8) and answer.revision == planar.revision and answer.cycle > 0
+        of_zone = questions.ask(Question(**SWING, margins=[("stop", 0.8), ("lower", "wall", 0.95)], others="still"), LIMIT_S)
+        assert of_zone.is_free(0.8, "stop") and not of_zone.is_free(0.8) and not of_zone.is_free(0.95, ("lower", "wall"))
         assert answer.start_joint == "shoulder" and answer.start_deviation == 0.25
         part = ("lower", [0.1, 0, 0, 0, 0, 0, 1], [], clearance.box([0.3, 0.01, 0.01]))
         carried = questions.ask(Question(**SWING, payloads={"part": part}, others="still"), LIMIT_S)

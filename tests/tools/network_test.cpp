@@ -1,16 +1,24 @@
 // Two machines: reports above 20 kB on a network that loses one packet in ten, and programs that do
 // not use this project's configuration.
+#include <arpa/inet.h>
 #include <gtest/gtest.h>
+#include <net/if_arp.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <cerrno>
 #include <chrono>
 #include <csignal>
 #include <cstdio>
+#include <cstring>
 #include <fstream>
 #include <optional>
 #include <regex>
 #include <span>
 #include <sstream>
+#include <thread>
 #include <vector>
 
 #include "monitor/files/reader.hpp"
@@ -91,6 +99,52 @@ TEST(Network, LargeReportsAreNeverIpFragmentsAndSurviveLoss) {
   EXPECT_EQ(wire.ip_fragments(), 0u);
   daemon->signal(SIGTERM);
   EXPECT_EQ(daemon->wait(), 0) << daemon->output();
+}
+
+// The kernel asks anew where the other machine is, as after a cable was pulled for a while. It
+// keeps up to 208 KiB for it, which is just the usual send buffer: whether it fills depends on the
+// sizes of packets. With more, it always does.
+void forget_neighbour(const char* address) {
+  std::ofstream("/proc/sys/net/ipv4/neigh/eth0/unres_qlen_bytes") << 400'000;
+  arpreq entry{};
+  auto* const place = reinterpret_cast<sockaddr_in*>(&entry.arp_pa);
+  place->sin_family = AF_INET;
+  EXPECT_EQ(inet_pton(AF_INET, address, &place->sin_addr), 1);
+  std::strncpy(entry.arp_dev, "eth0", sizeof entry.arp_dev - 1);
+  const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+  EXPECT_EQ(ioctl(socket, SIOCDARP, &entry), 0) << std::strerror(errno);
+  close(socket);
+}
+
+// Packets to a machine that does not answer wait in the daemon's only send buffer.
+TEST(Network, LocalClientsHaveTheirReportsWhileAnotherMachineCannotBeReached) {
+  test::NetworkNamespace robot(1), panel(2);
+  for (const auto* machine : {&robot, &panel}) {
+    if (!machine->refusal().empty()) GTEST_SKIP() << machine->refusal();
+  }
+  test::LossyWire wire(robot.frames(), panel.frames());
+  const test::CellFile cell(crowded_cell());
+  const auto arguments = test::with(test::dds_arguments(test::own_dds()), {"--interface", "eth0"});
+  std::optional<ChildProcess> daemon, local, remote;
+  // Many networks carry no multicast, so that each reader is sent its own packets.
+  const std::string unicast =
+      "CYCLONEDDS_URI=<CycloneDDS><Domain><General><AllowMulticast>spdp</AllowMulticast></General>"
+      "</Domain></CycloneDDS>";
+  robot.run([&] {
+    daemon.emplace("/usr/bin/env", test::with({unicast, test::kDaemon, cell.path()}, arguments));
+    local.emplace(test::kWatch, test::with({"--plain"}, arguments));
+  });
+  panel.run([&] { remote.emplace(test::kWatch, test::with({"--plain"}, arguments)); });
+  ASSERT_TRUE(eventually([&] { return local->wrote("cycle ") && remote->wrote("cycle "); }))
+      << daemon->output() << local->output() << remote->output();
+  wire.lose(1.0);
+  robot.run([] { forget_neighbour("10.77.0.2"); });
+  std::this_thread::sleep_for(std::chrono::seconds(5));
+  local->signal(SIGTERM);
+  EXPECT_EQ(local->wait(), 0);
+  const auto [came, missed] = came_and_missed(local->output());
+  EXPECT_GT(came, 500u) << local->output();
+  EXPECT_LE(missed, came / 20) << local->output();
 }
 
 // Objects that stand still above a floor, each with a published pair.

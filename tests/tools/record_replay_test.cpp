@@ -102,6 +102,21 @@ TEST_F(RecordReplay, TableHasEveryPairUnlessOnlyThePublishedAreAskedFor) {
   EXPECT_EQ(2, replay({"--compare", "--evaluate-all"}));
 }
 
+TEST_F(RecordReplay, AResultIsWrittenForCiSystems) {
+  ASSERT_EQ(0, record_log()) << output;
+  EXPECT_EQ(0, replay({"--expect-min-distance", "0.01", "--junit", path("met.xml")})) << output;
+  const std::string met = read_text(folder / "met.xml");
+  EXPECT_THAT(met, HasSubstr("tests=\"1\" failures=\"0\" errors=\"0\""));
+  EXPECT_THAT(met, HasSubstr("<property name=\"ticks\" value=\"200\"/>"));
+  EXPECT_THAT(met, HasSubstr("<property name=\"not_judged\" value=\""));
+  EXPECT_EQ(1, replay({"--expect-min-distance", "0.2", "--junit", path("failed.xml")}));
+  const std::string failed = read_text(folder / "failed.xml");
+  EXPECT_THAT(failed, HasSubstr("failures=\"1\" errors=\"0\""));
+  EXPECT_THAT(failed, HasSubstr("<failure message=\"tick "));
+  EXPECT_EQ(1, replay({"--junit", path("met.xml")})) << "it exists";
+  EXPECT_EQ(2, replay({"--junit", path("t.csv"), "--csv", path("t.csv")}));
+}
+
 TEST_F(RecordReplay, ReferenceDistancesAreMetOrNamedWithTickPairAndFigure) {
   ASSERT_EQ(0, record_log()) << output;
   std::string reference = "distance,object_b,object_a,t_ns\n";

@@ -59,7 +59,7 @@ objects:
   - {name: floor, fixed: true, pose: {xyz: [0, 0, -0.05]}, box: {size: [60, 60, 0.1]}}
   - {name: gripper_of_the_second_robot_beside_the_conveyor_left_jaw, groups: [left], box: {size: [0.2, 0.2, 0.2]}}
   - {name: gripper_of_the_second_robot_beside_the_conveyor_right_jaw, groups: [right], box: {size: [0.2, 0.2, 0.2]}}
-pairs: [{between: [left, right], publish: true}]
+pairs: [{between: [left, right], publish: true}, {between: [floor, left]}]
 simulation:
   movers:
     - {object: gripper_of_the_second_robot_beside_the_conveyor_left_jaw, centre: {xyz: [0, 0, 0.5]}}

@@ -40,6 +40,7 @@ struct CheckArguments {
   std::vector<std::string> joints;  // NAME=POSITION
   std::string out;
   std::string csv;
+  std::string junit;
   std::uint32_t balance = 0;  // a cell in this many shares of the same cost; 0: none
   bool force = false;
   bool published = false;

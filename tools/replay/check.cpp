@@ -1,6 +1,8 @@
 #include <fmt/format.h>
 
+#include <array>
 #include <chrono>
+#include <cstddef>
 #include <cstdio>
 #include <filesystem>
 #include <map>
@@ -21,6 +23,7 @@
 #include "monitor/replay/report_csv.hpp"
 #include "monitor/replay/report_recorder.hpp"
 #include "tools/replay/arguments.hpp"
+#include "tools/replay/junit.hpp"
 #include "tools/replay/share_balance.hpp"
 #include "tools/shared/named_distance.hpp"
 #include "tools/shared/progress_bar.hpp"
@@ -293,6 +296,15 @@ int replay_in(const Cell& cell, const CheckArguments& arguments,
   const std::chrono::duration<double> elapsed = std::chrono::steady_clock::now() - started;
   bar.finish();
   print(stderr, "{}", replay.text());
+  if (!arguments.junit.empty()) {
+    const std::string& name = arguments.recording();
+    if (const auto wrong =
+            write_junit(arguments.junit, cell.scene.name, name, replay, elapsed.count());
+        !wrong.empty()) {
+      say(wrong);
+      return kFailed;
+    }
+  }
   if (!replay.error.empty()) return kFailed;
   print_summary(replay, arguments, elapsed.count());
   const bool explained = tracked.tell();
@@ -309,11 +321,14 @@ bool are_one_file(const std::filesystem::path& first, const std::filesystem::pat
 }  // namespace
 
 int check_recording(const CheckArguments& arguments, StopSignal& stop) {
-  if (are_one_file(arguments.out, arguments.csv)) {
-    say(fmt::format("two outputs name the same file, {}; expected one for each", arguments.csv));
+  const std::array outputs = {arguments.out, arguments.csv, arguments.junit};
+  for (std::size_t i = 0; i < outputs.size(); ++i) {
+    const std::string &one = outputs[i], &next = outputs[(i + 1) % outputs.size()];
+    if (!are_one_file(one, next)) continue;
+    say(fmt::format("two outputs name the same file, {}; expected one for each", next));
     return kUsage;
   }
-  for (const std::string& output : {arguments.out, arguments.csv}) {
+  for (const std::string& output : outputs) {
     for (const std::string& recording : arguments.span.recordings) {
       if (!output_is_not_an_input("clearance-replay", output,
                                   {recording, arguments.cell, arguments.reference})) {

@@ -151,6 +151,8 @@ async function layout() {
 // How the closest pair, which overlaps, is told; the view's size with and without the floor, and how far the camera is; labels, and heads of
 // the table that are wider than their columns; what a link has, and what is shown when it is opened.
 async function crowded() {
+  await page.waitForFunction(() => window.clearance.state.minimum());
+  await frames(5);
   const found = await page.evaluate(() => {
     const { state, view } = window.clearance, pair = state.minimum(), width = ({ min, max }) => max.x - min.x;
     return { distance: pair.distance, level: state.levelOf(pair), header: document.getElementById("minimum").className, lines: view.lines.shown.length,
