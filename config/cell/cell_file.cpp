@@ -49,6 +49,13 @@ constexpr Range kRates{.least = 1.0, .most = 10'000.0};  // Hz
 // The range is from one tick at 1 kHz to some days.
 constexpr Range kRefreshes{.least = 1e-3, .most = 1e6};  // s
 
+void note_mesh_errors(ObjectList& list) {
+  for (Object& object : list.objects) {
+    const auto error = list.mesh_errors.find(object.name);
+    if (error != list.mesh_errors.end()) object.mesh_error = error->second;
+  }
+}
+
 // The sections of a cell, one function each.
 class CellReader {
  public:
@@ -81,6 +88,7 @@ class CellReader {
   const YamlNode* budget_ = nullptr;  // its place in the cell
   const YamlNode* ros_ = nullptr;     // likewise, here and below
   const YamlNode* shares_ = nullptr;
+  const YamlNode* errors_ = nullptr;
 };
 
 // Both units are required: a default would silently be wrong for many cells.
@@ -141,7 +149,6 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   const YamlNode* allowed_node = map.optional("allowed_collisions");
   const YamlNode* zones_node = map.optional("zones");
   const YamlNode* contacts_node = map.optional("contacts");
-  const YamlNode* errors_node = map.optional("errors");
   const YamlNode* simulation_node = map.optional("simulation");
   shares_ = map.optional("shares");
 
@@ -165,13 +172,11 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   if (margins_node != nullptr) read_link_margins(*margins_node, robots, quantities, list);
   attach_objects(quantities, robots, list);
   mount_sensors(robots, list, quantities, sensors);
-  if (errors_node != nullptr)
-    cell.scene.attached_error = read_errors(*errors_node, quantities, robots, list);
+  errors_ = map.optional("errors");
+  if (errors_ != nullptr)
+    cell.scene.attached_error = read_errors(*errors_, quantities, robots, list);
   allow_by_matrices(list, robots.may_touch);
-  for (Object& object : list.objects) {
-    const auto error = list.mesh_errors.find(object.name);
-    if (error != list.mesh_errors.end()) object.mesh_error = error->second;
-  }
+  note_mesh_errors(list);
   if (options_.mesh_errors != nullptr) *options_.mesh_errors = std::move(list.mesh_errors);
   refuse_same_names(list, diagnostics_);
   refuse_too_many_sources(list, robots.variables, robots_node, diagnostics_);
@@ -208,8 +213,6 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   cell.scene.robots = std::move(robots.robots);
   cell.scene.variables = std::move(robots.variables);
   crop_sensors(sensors, diagnostics_, cell.scene);
-  if (errors_node != nullptr && diagnostics_.empty())
-    refuse_large_angles(*errors_node, cell.scene, diagnostics_);
 }
 
 // Reads the top level. Units come first, since every other section needs them.
@@ -235,6 +238,8 @@ void CellReader::read(const YamlNode& root, Cell& cell) {
   if (const YamlNode* partner = map.optional("partner"))
     cell.partner = read_partner(*partner, diagnostics_);
   read_objects_and_pairs(map, quantities, cell);
+  if (errors_ != nullptr && diagnostics_.empty())
+    refuse_large_angles(*errors_, cell.scene, diagnostics_);
   map.refuse_unknown_keys();
   refuse_frames_without_a_world(root, cell);
   if (diagnostics_.empty() && !options_.share.empty()) select_share(root, cell);

@@ -10,6 +10,7 @@
 #include <utility>
 #include <variant>
 
+#include "config/cell/picture_series_reader.hpp"
 #include "config/cell/ros_reader.hpp"
 #include "config/yaml/map_reader.hpp"
 #include "config/yaml/scalar.hpp"
@@ -23,8 +24,6 @@ constexpr std::int64_t kAgeLimitNs = 100'000'000;
 constexpr std::int64_t kMostColumns = 65535;                              // monitor/clouds
 constexpr std::int64_t kMostPoints = 4'000'000;                           // 200 MB of memory
 constexpr Range kDepths{.least = 0.0, .most = 1e4, .above_least = true};  // m, monitor/clouds
-constexpr std::int64_t kMostWitnessed = 1000;                             // frames
-constexpr std::int64_t kMostFrames = 16;                                  // a megabyte each
 constexpr double kMapRange = 20.0;                             // m, from the origin of an octomap
 constexpr Range kFrameRates{.least = 0.01, .most = 10'000.0};  // Hz
 constexpr Range kStampErrors{.least = 0.0, .most = 1000.0};    // ms
@@ -62,8 +61,6 @@ class SensorReader {
   void read_points(MapReader& map, Sensor& sensor) const;
   void read_shell(MapReader& map, Sensor& sensor) const;
   void read_liveness(MapReader& map, Sensor& sensor) const;
-  void read_persistence(const YamlNode& node, Sensor& sensor) const;
-  void read_witness(const YamlNode& node, Sensor& sensor) const;
   void refuse_large_error(const YamlNode& node, const Sensor& sensor) const;
   void read_object(MapReader& map, Object& object, bool& groups_known) const;
 
@@ -280,37 +277,6 @@ void SensorReader::read_liveness(MapReader& map, Sensor& sensor) const {
   }
 }
 
-// "witness: true", or a map that states what it takes.
-void SensorReader::read_witness(const YamlNode& node, Sensor& sensor) const {
-  if (sensor.kind != SensorKind::kDepthImage)
-    return refuse({{&node, "witness"}}, "depth images only");
-  sensor.is_witness = true;
-  if (node.kind != YamlNode::Kind::kMap) {
-    sensor.is_witness = read_flag(node, diagnostics_).value_or(false);
-    return;
-  }
-  MapReader map(node, "'witness' of a sensor", diagnostics_);
-  if (const YamlNode* share = map.optional("share"))
-    sensor.witness_share =
-        read_number(*share, kShares, "a share of rays, 0 to 1", diagnostics_).value_or(0.1);
-  if (const YamlNode* frames = map.optional("frames"))
-    sensor.witness_frames = static_cast<std::uint32_t>(
-        read_integer(*frames, 1, kMostWitnessed, "frames in a row", diagnostics_).value_or(1));
-  map.refuse_unknown_keys();
-}
-
-void SensorReader::read_persistence(const YamlNode& node, Sensor& sensor) const {
-  MapReader map(node, "'persist' of a sensor", diagnostics_);
-  const YamlNode* frames = map.required("frames");
-  const YamlNode* of = map.required("of");
-  map.refuse_unknown_keys();
-  if (frames == nullptr || of == nullptr) return;
-  const auto most = read_integer(*of, 1, kMostFrames, "frames", diagnostics_);
-  sensor.persist_of = static_cast<std::uint32_t>(most.value_or(kMostFrames));
-  sensor.persist_frames = static_cast<std::uint32_t>(
-      read_integer(*frames, 1, sensor.persist_of, "of these frames", diagnostics_).value_or(1));
-}
-
 // The object of a sensor has the limits of any object.
 void SensorReader::read_object(MapReader& map, Object& object, bool& groups_known) const {
   object.margin = defaults_.margin;
@@ -364,7 +330,8 @@ void SensorReader::read(const YamlNode& node, SensorList& list, ObjectList& obje
     const auto ms = read_number(*error, kStampErrors, "how far a stamp is off in ms", diagnostics_);
     if (ms) sensor.stamp_error_ns = static_cast<std::int64_t>(std::ceil(1e6 * *ms));
   }
-  if (const YamlNode* witness = map.optional("witness")) read_witness(*witness, sensor);
+  if (const YamlNode* witness = map.optional("witness"))
+    read_witness(*witness, diagnostics_, sensor);
   if (const YamlNode* unseen = map.optional("unseen")) {
     sensor.unseen = read_flag(*unseen, diagnostics_).value_or(false);
     if (sensor.unseen && sensor.kind != SensorKind::kDepthImage)
@@ -375,7 +342,7 @@ void SensorReader::read(const YamlNode& node, SensorList& list, ObjectList& obje
   }
   list.reaches.push_back(map.optional("reach"));
   const YamlNode* persist = map.optional("persist");
-  if (persist != nullptr) read_persistence(*persist, sensor);
+  if (persist != nullptr) read_persistence(*persist, diagnostics_, sensor);
   read_object(map, object, groups_known);
   if (persist != nullptr && object.max_speed == kInfinity) {
     diagnostics_.add(*persist,

@@ -163,11 +163,11 @@ double ModelErrors::most_on_vertices(const PosedPart& part, const Vec3& towards,
 ErrorAlong ModelErrors::along(const PosedPart& a, const PosedPart& b, const Vec3& normal,
                               const ErrorsBetween& between, double moved) const noexcept {
   Chains chains{stated_.source_of(a.object), stated_.source_of(b.object), between.common};
-  const Sums of_a = sums_between(chains.tip_a, chains.common),
-             of_b = sums_between(chains.tip_b, chains.common);
-  if (!of_a.is_known || !of_b.is_known) return {between.largest, 0.0};
-  chains.translation = of_a.translation + of_b.translation;
-  chains.angle = of_a.angle + of_b.angle;
+  const Sums sums_a = sums_between(chains.tip_a, chains.common),
+             sums_b = sums_between(chains.tip_b, chains.common);
+  if (!sums_a.is_known || !sums_b.is_known) return {between.largest, 0.0};
+  chains.translation = sums_a.translation + sums_b.translation;
+  chains.angle = sums_a.angle + sums_b.angle;
 
   double first = kInfinity;
   Vec3 at;
@@ -197,9 +197,9 @@ ErrorAlong ModelErrors::along(const PosedPart& a, const PosedPart& b, const Vec3
   const auto arm_of = [&](std::uint32_t tip, const Sums& sums) {
     return tip == chains.common ? 0.0 : length_at_most(at - origins_[tip]) + sums.length + across;
   };
-  const double arm_a = arm_of(chains.tip_a, of_a), arm_b = arm_of(chains.tip_b, of_b);
-  const double displaced =
-      chains.translation + of_a.slide + of_b.slide + of_a.angle * arm_a + of_b.angle * arm_b;
+  const double arm_a = arm_of(chains.tip_a, sums_a), arm_b = arm_of(chains.tip_b, sums_b);
+  const double displaced = chains.translation + sums_a.slide + sums_b.slide + sums_a.angle * arm_a +
+                           sums_b.angle * arm_b;
   const double second = chains.angle * (1.0 + 2.0 * chains.angle) * displaced;
   const double rounding = kPlaceError * chains.angle * (a.coordinates + b.coordinates + farthest_);
   const double loss =
@@ -207,8 +207,8 @@ ErrorAlong ModelErrors::along(const PosedPart& a, const PosedPart& b, const Vec3
       rounding;
   // The parts' own motion changes their distance from the sources, too. Twice: between the ticks
   // they may be farther from both places than these are from each other.
-  const double drift = of_a.drift_shift + of_b.drift_shift + of_a.drift_turn * arm_a +
-                       of_b.drift_turn * arm_b + chains.angle * moved;
+  const double drift = sums_a.drift_shift + sums_b.drift_shift + sums_a.drift_turn * arm_a +
+                       sums_b.drift_turn * arm_b + chains.angle * moved;
   return {std::min(loss, between.largest), 2.0 * kOutward * drift};
 }
 

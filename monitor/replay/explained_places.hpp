@@ -19,7 +19,7 @@ struct LinkByName {
   std::uint32_t robot = 0, link = 0;
   std::string name;
 };
-// Or a sentence that says what is wrong, with the nearest name.
+// Returns a sentence where there is none, with the nearest name.
 [[nodiscard]] std::variant<LinkByName, std::string> link_by_name(const Scene& scene,
                                                                  const std::string& name);
 

@@ -20,7 +20,6 @@
 #include "monitor/tick/monitor.hpp"
 
 #include <algorithm>
-#include <functional>
 #include <limits>
 #include <utility>
 
@@ -178,22 +177,6 @@ bool Monitor::uses(const SeenCloud* cloud) const noexcept {
 SensorFrame Monitor::frame_in_use(std::uint32_t sensor) const noexcept {
   return state_->shown[sensor].in_use;
 }
-
-std::vector<ErrorShare> Monitor::error_shares(std::uint32_t pair) const {
-  const State& s = *state_;
-  const PairReport report = s.pair_report(pair);
-  std::vector<ErrorShare> shares;
-  if (!s.errors.any() || !report.normal.allFinite()) return shares;
-  const ObjectPair& of = s.scene.pairs[pair];
-  s.errors.each_share(of.first, of.second, report.witness_a, report.normal,
-                      [&](std::uint32_t source, double metres) {
-                        if (metres > 0.0) shares.push_back({source, metres});
-                      });
-  std::ranges::sort(shares, std::ranges::greater{}, &ErrorShare::metres);
-  return shares;
-}
-
-const StatedErrors& Monitor::stated_errors() const noexcept { return state_->errors.stated(); }
 
 PairReport Monitor::pair(std::uint32_t pair) const noexcept { return state_->pair_report(pair); }
 

@@ -1,7 +1,8 @@
-// Makes the memory of a monitor.
+// Makes the memory of a monitor, and answers what only a person asks of it.
 #include "monitor/tick/monitor_state.hpp"
 
 #include <algorithm>
+#include <functional>
 #include <vector>
 
 #include "config/scene/refresh_share.hpp"
@@ -57,5 +58,21 @@ Monitor::State::State(const Scene& the_scene, const KnownHulls& known_hulls)
   separations.prepare(report);
   report.gradients = unknown_gradients(differentiation.rows());
 }
+
+std::vector<ErrorShare> Monitor::error_shares(std::uint32_t pair) const {
+  const State& s = *state_;
+  const PairReport report = s.pair_report(pair);
+  std::vector<ErrorShare> shares;
+  if (!s.errors.any() || !report.normal.allFinite()) return shares;
+  const ObjectPair& of = s.scene.pairs[pair];
+  s.errors.each_share(of.first, of.second, report.witness_a, report.normal,
+                      [&](std::uint32_t source, double metres) {
+                        if (metres > 0.0) shares.push_back({source, metres});
+                      });
+  std::ranges::sort(shares, std::ranges::greater{}, &ErrorShare::metres);
+  return shares;
+}
+
+const StatedErrors& Monitor::stated_errors() const noexcept { return state_->errors.stated(); }
 
 }  // namespace clearance

@@ -17,6 +17,7 @@ namespace clearance {
 namespace {
 
 constexpr std::int64_t kTickNs = 1'000'000;
+constexpr std::int64_t kBetweenNs = 60'000'000'000;  // in which any joint may get anywhere
 constexpr std::size_t kShown = 4;  // sources of a pair
 
 double millimetres(double metres) noexcept { return 1e3 * metres; }
@@ -32,6 +33,7 @@ class OnePosture {
 
   void place(std::span<const double> positions) {
     std::vector<JointSample> joints(positions.size());
+    now_ns_ += kBetweenNs;
     for (int tick = 0; tick < 2; ++tick) {
       now_ns_ += kTickNs;
       for (std::uint32_t v = 0; v < joints.size(); ++v) {
