@@ -37,7 +37,7 @@ void read_witness(const YamlNode& node, Diagnostics& diagnostics, Sensor& sensor
   MapReader map(node, "'witness' of a sensor", diagnostics);
   if (const YamlNode* share = map.optional("share"))
     sensor.witness_share =
-        read_number(*share, kShareOfRays, "a share of rays, 0 to 1", diagnostics).value_or(0.1);
+        read_number(*share, kShareOfRays, "a share of rays, 0 to 1", diagnostics).value_or(0.05);
   if (const YamlNode* frames = map.optional("frames"))
     sensor.witness_frames = static_cast<std::uint32_t>(
         read_integer(*frames, 1, kMostWitnessed, "frames in a row", diagnostics).value_or(1));

@@ -117,7 +117,7 @@ struct Sensor {
   // if more than `witness_share` of the rays that should meet it go through it, in
   // `witness_frames` pictures in a row.
   bool is_witness = false;
-  double witness_share = 0.1;
+  double witness_share = 0.05;
   std::uint32_t witness_frames = 5;
 
   // Reports say how near each link is to a place in the picture that the frame has not seen. Only a

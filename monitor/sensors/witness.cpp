@@ -113,52 +113,113 @@ double depth_at(const DepthImage& image, std::uint32_t column, std::uint32_t row
 }  // namespace
 
 Witness::Witness(const Scene& scene)
-    : scene_(scene), errors_(scene), surest_(kRays), nearest_(kRays), rays_(scene.robots.size()) {}
+    : scene_(scene), errors_(scene), surest_(kRays), nearest_(kRays), rays_(scene.robots.size()) {
+  std::size_t parts = 0;
+  for (const Object& object : scene.objects) parts += object.parts.size();
+  placed_.reserve(parts);
+}
 
-// Only the rays in the rectangle around the part's sphere can meet it.
-void Witness::meet(const Part& part, const RelativePose& camera_from_part, double shrunk_by,
-                   const PinholeCamera& camera) {
-  const Mat3& turn = camera_from_part.rotation;
-  const double radius = part.shape.bounding_radius + part.shape.radius + shrunk_by;
-  const Vec3& centre = camera_from_part.translation;
-  const double near = centre.z() - radius;
-  if (!(near > 0.0)) return;  // beside or behind the camera: it says nothing
-  const Vec3 origin = -(turn.transpose() * centre);
+// Only the rays in the rectangle around a part's sphere can meet it.
+Witness::Pixels Witness::pixels_around(const Vec3& centre, double radius,
+                                       const PinholeCamera& camera) noexcept {
+  const double near = centre.z() - radius, far = centre.z() + radius;
+  if (!(near > 0.0)) return {};  // beside or behind the camera: it says nothing
   const auto range = [&](double at, double focal, double middle, std::uint32_t count) {
-    const double low = std::min((at - radius) / near, (at - radius) / (near + 2.0 * radius));
-    const double high = std::max((at + radius) / near, (at + radius) / (near + 2.0 * radius));
-    const auto ray = [&](double tangent) {
-      const double index = (focal * tangent + middle) / grid_.step;
-      return static_cast<std::uint32_t>(std::clamp(index, 0.0, static_cast<double>(count)));
+    const auto pixel = [&](double tangent) {
+      return static_cast<std::uint32_t>(
+          std::clamp(focal * tangent + middle, 0.0, static_cast<double>(count)));
     };
-    return std::pair(ray(low), std::min(count, ray(high) + 1));
+    const double low = std::min((at - radius) / near, (at - radius) / far);
+    const double high = std::max((at + radius) / near, (at + radius) / far);
+    return std::pair(pixel(low), std::min(count, pixel(high) + 1));
   };
-  const auto [left, right] = range(centre.x(), camera.fx, camera.cx, grid_.columns);
-  const auto [top, bottom] = range(centre.y(), camera.fy, camera.cy, grid_.rows);
-  for (std::uint32_t row = top; row < bottom; ++row) {
-    for (std::uint32_t column = left; column < right; ++column) {
-      const Vec3 ray((column * grid_.step - camera.cx) / camera.fx,
-                     (row * grid_.step - camera.cy) / camera.fy, 1.0);
+  const auto [left, right] = range(centre.x(), camera.fx, camera.cx, camera.width);
+  const auto [top, bottom] = range(centre.y(), camera.fy, camera.cy, camera.height);
+  return {left, right, top, bottom};
+}
+
+// The joints at the stamp place the links, and all that may be wrong of a part adds up.
+void Witness::place_parts(std::uint32_t r, const Sensor& sensor, const PinholeCamera& camera,
+                          const PastPose& place, const PostureHistory& postures) noexcept {
+  const std::uint32_t mount = errors_.source_of(sensor.object);
+  const double mount_turn = mount == ErrorSource::kNone ? 0.0 : errors_.sources()[mount].rotation;
+  const Robot& robot = scene_.robots[r];
+  placed_.clear();
+  for (std::uint32_t link = 0; link < robot.links.size(); ++link) {
+    const std::uint32_t i = robot.links[link].object;
+    if (i == RobotLink::kNoObject) continue;
+    const PastPose past = postures.link(r, link);
+    if (!past.known) continue;
+    const Object& object = scene_.objects[i];
+    for (const Part& part : object.parts) {
+      const double radius = part.shape.bounding_radius + part.shape.radius;
+      const double reach = part.object_from_part.position.norm() + radius;
+      const Pose world_from_part = compose(past.world_from_body, part.object_from_part);
+      const RelativePose camera_from_part = relative_pose(place.world_from_body, world_from_part);
+      const double distance = camera_from_part.translation.norm() + radius;
+      // The errors of the mount count for this distance, not for the whole picture.
+      const double beyond = std::max(0.0, sensor.extent() - distance) * mount_turn;
+      const double error =
+          rounded_up(place.error(distance) + past.error(reach) + object.mesh_error +
+                     object.shape_error + (errors_.largest(i, sensor.object) - beyond));
+      const Pixels pixels = pixels_around(camera_from_part.translation, radius + error, camera);
+      if (!pixels.is_empty()) placed_.push_back({&part, camera_from_part, error, pixels});
+    }
+  }
+}
+
+// Spreads the rays over the part of the picture in which the robot may be.
+void Witness::spread_rays() noexcept {
+  Pixels all = placed_.front().pixels;
+  for (const Placed& each : placed_) {
+    all = {std::min(all.left, each.pixels.left), std::max(all.right, each.pixels.right),
+           std::min(all.top, each.pixels.top), std::max(all.bottom, each.pixels.bottom)};
+  }
+  grid_ = {.left = all.left, .top = all.top};
+  const auto rays_of = [&](std::uint32_t pixels) { return (pixels + grid_.step - 1) / grid_.step; };
+  while (static_cast<std::uint64_t>(rays_of(all.right - all.left)) * rays_of(all.bottom - all.top) >
+         kRays)
+    ++grid_.step;
+  grid_.columns = rays_of(all.right - all.left);
+  grid_.rows = rays_of(all.bottom - all.top);
+  const auto rays = static_cast<std::ptrdiff_t>(grid_.columns * grid_.rows);
+  std::fill(surest_.begin(), surest_.begin() + rays, kNowhere);
+  std::fill(nearest_.begin(), nearest_.begin() + rays, kNowhere);
+}
+
+void Witness::meet(const Placed& placed, const PinholeCamera& camera) noexcept {
+  const Mat3& turn = placed.camera_from_part.rotation;
+  const Vec3 origin = -(turn.transpose() * placed.camera_from_part.translation);
+  const auto first = [&](std::uint32_t pixel, std::uint32_t begin) {
+    return (pixel - begin) / grid_.step;
+  };
+  const std::uint32_t right = first(placed.pixels.right - 1, grid_.left) + 1,
+                      bottom = first(placed.pixels.bottom - 1, grid_.top) + 1;
+  for (std::uint32_t row = first(placed.pixels.top, grid_.top); row < bottom; ++row) {
+    for (std::uint32_t column = first(placed.pixels.left, grid_.left); column < right; ++column) {
+      const Vec3 ray((grid_.left + column * grid_.step - camera.cx) / camera.fx,
+                     (grid_.top + row * grid_.step - camera.cy) / camera.fy, 1.0);
       const Vec3 along = turn.transpose() * ray;
       const std::size_t index = row * grid_.columns + column;
-      const Span grown = inside(part.shape, origin, along, shrunk_by);
+      const Span grown = inside(placed.part->shape, origin, along, placed.error);
       if (!grown.any()) continue;
       nearest_[index] = std::min(nearest_[index], static_cast<float>(grown.from));
-      const Span shrunk = inside(part.shape, origin, along, -shrunk_by);
+      const Span shrunk = inside(placed.part->shape, origin, along, -placed.error);
       if (shrunk.any()) surest_[index] = std::min(surest_[index], static_cast<float>(shrunk.from));
     }
   }
 }
 
-void Witness::count(std::uint32_t robot, const Sensor& sensor, const DepthImage& image) noexcept {
+RaysOfRobot Witness::count(const Sensor& sensor, const DepthImage& image) const noexcept {
   const DepthError error{sensor.error_constant, sensor.error_quadratic};
-  RaysOfRobot& rays = rays_[robot];
+  RaysOfRobot rays;
   for (std::uint32_t row = 0; row < grid_.rows; ++row) {
     for (std::uint32_t column = 0; column < grid_.columns; ++column) {
       const std::size_t index = row * grid_.columns + column;
       const double surest = surest_[index];
       if (!(surest >= sensor.least_depth && surest <= sensor.greatest_depth)) continue;
-      double depth = depth_at(image, column * grid_.step, row * grid_.step);
+      const double depth =
+          depth_at(image, grid_.left + column * grid_.step, grid_.top + row * grid_.step);
       if (!(depth >= sensor.least_depth && depth <= sensor.greatest_depth)) continue;
       const double by = error.at(depth);
       if (depth > surest + by) {
@@ -168,49 +229,22 @@ void Witness::count(std::uint32_t robot, const Sensor& sensor, const DepthImage&
       }
     }
   }
+  return rays;
 }
 
 RobotsSeen Witness::judge(const Sensor& sensor, const PinholeCamera& camera,
                           const DepthImage& image, const PastPose& place,
                           const PostureHistory& postures) noexcept {
-  grid_.step = 1;
-  const auto rays_of = [&](std::uint32_t pixels) { return (pixels + grid_.step - 1) / grid_.step; };
-  while (static_cast<std::uint64_t>(rays_of(image.width)) * rays_of(image.height) > kRays)
-    ++grid_.step;
-  grid_.columns = rays_of(image.width);
-  grid_.rows = rays_of(image.height);
-
-  const std::uint32_t mount = errors_.source_of(sensor.object);
-  const double mount_turn = mount == ErrorSource::kNone ? 0.0 : errors_.sources()[mount].rotation;
   RobotsSeen seen;
   const auto robots = std::min<std::size_t>(scene_.robots.size(), kMostRobotsSeen);
   for (std::uint32_t r = 0; r < robots; ++r) {
-    const Robot& robot = scene_.robots[r];
     rays_[r] = {};
-    if (robot.is_attached) continue;
-    std::ranges::fill(surest_, kNowhere);
-    std::ranges::fill(nearest_, kNowhere);
-    for (std::uint32_t link = 0; link < robot.links.size(); ++link) {
-      const std::uint32_t i = robot.links[link].object;
-      if (i == RobotLink::kNoObject) continue;
-      const PastPose past = postures.link(r, link);
-      if (!past.known) continue;
-      const Object& object = scene_.objects[i];
-      for (const Part& part : object.parts) {
-        const double radius = part.shape.bounding_radius + part.shape.radius;
-        const double reach = part.object_from_part.position.norm() + radius;
-        const Pose world_from_part = compose(past.world_from_body, part.object_from_part);
-        const double distance =
-            (world_from_part.position - place.world_from_body.position).norm() + radius;
-        // The errors of the mount count for this distance, not for the whole picture.
-        const double beyond = std::max(0.0, sensor.extent() - distance) * mount_turn;
-        const double error =
-            rounded_up(place.error(distance) + past.error(reach) + object.mesh_error +
-                       object.shape_error + (errors_.largest(i, sensor.object) - beyond));
-        meet(part, relative_pose(place.world_from_body, world_from_part), error, camera);
-      }
-    }
-    count(r, sensor, image);
+    if (scene_.robots[r].is_attached) continue;
+    place_parts(r, sensor, camera, place, postures);
+    if (placed_.empty()) continue;
+    spread_rays();
+    for (const Placed& each : placed_) meet(each, camera);
+    rays_[r] = count(sensor, image);
     const std::uint32_t met = rays_[r].agreeing + rays_[r].through;
     if (met < kLeastRays) continue;
     const bool is_through = rays_[r].through > sensor.witness_share * met;

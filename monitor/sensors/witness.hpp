@@ -25,7 +25,7 @@ struct RaysOfRobot {
 
 class Witness {
  public:
-  // Rays in a picture, at most; they are spread evenly.
+  // Rays for a robot in a picture, at most; they are spread evenly over where it may be.
   static constexpr std::uint32_t kRays = 4096;
   // Fewer rays that meet a robot say nothing of it.
   static constexpr std::uint32_t kLeastRays = 24;
@@ -41,16 +41,33 @@ class Witness {
   [[nodiscard]] const std::vector<RaysOfRobot>& rays() const noexcept { return rays_; }
 
  private:
-  // The rays in the last picture, as indices of columns and rows of the coarse grid.
-  struct Grid {
-    std::uint32_t step = 1, columns = 0, rows = 0;
+  // Columns from left to before right, and rows likewise.
+  struct Pixels {
+    std::uint32_t left = 0, right = 0, top = 0, bottom = 0;
+    [[nodiscard]] bool is_empty() const noexcept { return left >= right || top >= bottom; }
   };
-  void meet(const Part& part, const RelativePose& camera_from_part, double shrunk_by,
-            const PinholeCamera& camera);
-  void count(std::uint32_t robot, const Sensor& sensor, const DepthImage& image) noexcept;
+  // A part that may be in the picture. `error`: no point of its true surface is farther from it, m.
+  struct Placed {
+    const Part* part = nullptr;
+    RelativePose camera_from_part;
+    double error = 0.0;
+    Pixels pixels;
+  };
+  // The rays: every `step`-th pixel from the upper left one on.
+  struct Grid {
+    std::uint32_t left = 0, top = 0, step = 1, columns = 0, rows = 0;
+  };
+  [[nodiscard]] static Pixels pixels_around(const Vec3& centre, double radius,
+                                            const PinholeCamera& camera) noexcept;
+  void place_parts(std::uint32_t r, const Sensor& sensor, const PinholeCamera& camera,
+                   const PastPose& place, const PostureHistory& postures) noexcept;
+  void spread_rays() noexcept;
+  void meet(const Placed& placed, const PinholeCamera& camera) noexcept;
+  [[nodiscard]] RaysOfRobot count(const Sensor& sensor, const DepthImage& image) const noexcept;
 
   const Scene& scene_;
   StatedErrors errors_;
+  std::vector<Placed> placed_;  // of the robot that is looked at
   Grid grid_;
   // By ray, of the robot that is looked at: where its shrunk bodies begin, and where it may begin
   // at the nearest, m.

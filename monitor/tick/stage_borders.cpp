@@ -72,7 +72,7 @@ void check_report(const Report& report, double most_error) noexcept {
   CLEARANCE_INVARIANT(!report.minimum_certified || report.minimum_known);
   CLEARANCE_INVARIANT(!report.minimum_known || report.lower_all <= report.minimum.lower);
   CLEARANCE_INVARIANT(!report.minimum_certified ||
-                      report.lower_all >= report.minimum.lower - kTightGap - most_error);
+                      report.lower_all >= report.minimum.lower - kTightGap - 2.0 * most_error);
   CLEARANCE_INVARIANT(report.oldest_evaluation_cycles <= report.cycle);
   if (!costly) return;
   check_zones(report.zones);

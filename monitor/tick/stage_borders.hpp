@@ -28,7 +28,8 @@ void check_displaced(std::span<const std::uint32_t> changed,
 void check_updated(const Culling& culling, const TickView& view) noexcept;
 
 // After 'report': its totals and its minimum agree with each other. Costly part: its zones and
-// separations agree, too. `most_error`: no stated error changes a distance by more, m.
+// separations agree, too. `most_error`: no stated error changes a distance by more, m. Within it,
+// another pair may be nearer than the certified minimum, and have the wider bounds.
 void check_report(const Report& report, double most_error = 0.0) noexcept;
 
 }  // namespace clearance

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
 #include <string_view>
 #include <vector>
 
@@ -17,7 +18,6 @@ namespace clearance {
 namespace {
 
 constexpr std::int64_t kTickNs = 1'000'000;
-constexpr std::int64_t kBetweenNs = 60'000'000'000;  // in which any joint may get anywhere
 constexpr std::size_t kShown = 4;  // sources of a pair
 
 double millimetres(double metres) noexcept { return 1e3 * metres; }
@@ -29,11 +29,12 @@ double zero_or_next(const JointVariable& variable) noexcept {
 // A monitor of the cell in one posture. Two ticks, so that pairs are evaluated as when it runs.
 class OnePosture {
  public:
-  explicit OnePosture(const Scene& scene) : scene_(scene), monitor_(scene) {}
+  explicit OnePosture(const Scene& scene) : scene_(scene) {}
 
   void place(std::span<const double> positions) {
     std::vector<JointSample> joints(positions.size());
-    now_ns_ += kBetweenNs;
+    // To a monitor that has heard other positions, these might be a leap.
+    monitor_ = std::make_unique<Monitor>(scene_, monitor_.get());
     for (int tick = 0; tick < 2; ++tick) {
       now_ns_ += kTickNs;
       for (std::uint32_t v = 0; v < joints.size(); ++v) {
@@ -41,14 +42,14 @@ class OnePosture {
         joints[v].position = positions[v];
         joints[v].stamp_ns = now_ns_;
       }
-      monitor_.tick({}, joints, now_ns_);
+      monitor_->tick({}, joints, now_ns_);
     }
   }
-  [[nodiscard]] const Monitor& monitor() const noexcept { return monitor_; }
+  [[nodiscard]] const Monitor& monitor() const noexcept { return *monitor_; }
 
  private:
   const Scene& scene_;
-  Monitor monitor_;
+  std::unique_ptr<Monitor> monitor_;
   std::int64_t now_ns_ = kTickNs;
 };
 

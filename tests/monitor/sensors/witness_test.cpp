@@ -221,6 +221,52 @@ TEST(SecondWitness, SeesABumpedCamera) {
   EXPECT_GT(watched.pictures_until_denied(0), 0);
 }
 
+// The smallest of these sizes with which a fault is found, whichever way it goes, within 5
+// pictures; infinity: none.
+template <class Apply>
+double smallest_found(const Apply& apply, std::initializer_list<double> sizes) {
+  for (const double size : sizes) {
+    for (const double sign : {1.0, -1.0}) {
+      WitnessedCell watched(two_arms_and_eye());
+      // The arm is stretched to the side, so that its links stand apart.
+      watched.positions()[variable_of(watched.cell(), "left_joint1")] = 1.2;
+      watched.positions()[variable_of(watched.cell(), "left_joint4")] = 0.9;
+      apply(watched, sign * size);
+      if (watched.pictures_until_denied(0, 5) > 0) return size;
+    }
+  }
+  return kInfinity;
+}
+
+TEST(SecondWitness, FindsSmallFaults) {
+  const std::initializer_list<double> angles = {0.005, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32};
+  const std::initializer_list<double> lengths = {0.005, 0.01, 0.02, 0.04, 0.08};
+  for (const auto& [joint, most] : {std::pair("left_joint1", 0.08),
+                                    {"left_joint2", 0.04},
+                                    {"left_joint3", 0.16},
+                                    {"left_joint4", 0.08},
+                                    {"left_joint6", 0.32}}) {
+    const auto lose_zero = [&, name = joint](WitnessedCell& watched, double by) {
+      watched.off()[variable_of(watched.cell(), name)] = by;
+    };
+    const double found = smallest_found(lose_zero, angles);
+    EXPECT_LE(found, most) << joint;
+    std::printf("zero of %s: %g rad\n", joint, found);
+  }
+  for (int axis = 0; axis < 3; ++axis) {
+    const auto bump_base = [&](WitnessedCell& watched, double by) {
+      watched.errors().bases[0].shift[axis] = by;
+    };
+    const auto bump_camera = [&](WitnessedCell& watched, double by) {
+      watched.camera_shift()[axis] = by;
+    };
+    const double base = smallest_found(bump_base, lengths);
+    const double camera = smallest_found(bump_camera, lengths);
+    EXPECT_LE(std::max(base, camera), 0.08) << axis;
+    std::printf("shift along %c: base %g m, camera %g m\n", "xyz"[axis], base, camera);
+  }
+}
+
 TEST(SecondWitness, AllowsWhatIsStated) {
   WitnessedCell strict(two_arms_and_eye()),
       allowing(two_arms_and_eye("errors: {joints: {position: 0.02}}\n"));
