@@ -151,7 +151,7 @@ std::string ExplainedPlaces::text() const {
     const double least = least_position(at.index);
     joints += fmt::format("  {:<36} {:>9.3f} {:>9} {}\n", text_of(source, scene_),
                           1e3 * position_error(source),
-                          least < kInfinity ? fmt::format("{:.3f}", 1e3 * least) : "none",
+                          least < 1.0 ? fmt::format("{:.3f}", 1e3 * least) : "none",
                           source.slide > 0.0 ? "mm" : "mrad");
   }
   if (!joints.empty())

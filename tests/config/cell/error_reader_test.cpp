@@ -78,7 +78,8 @@ TEST(StatedErrorKeys, AreDefaultsByKindAndExceptionsByName) {
 TEST(StatedErrorKeys, AreRefusedWithTheirPlaceAndAHint) {
   EXPECT_THAT(mistakes_in("errors: {joint: {position: 1}}\n"), HasSubstr("unknown key 'joint'"));
   EXPECT_THAT(mistakes_in("errors: {joints: {position: -1}}\n"), HasSubstr("from 0 on"));
-  EXPECT_THAT(mistakes_in("errors: {fixed: {translation: -1}}\n"), HasSubstr("translation"));
+  EXPECT_THAT(mistakes_in("errors: {fixed: {translation: -1}}\n"),
+              HasSubstr("expected the largest error of a place"));
   EXPECT_THAT(mistakes_in("errors: {except: [{joint: elbo, position: 1}]}\n"),
               HasSubstr("did you mean 'elbow'"));
   EXPECT_THAT(mistakes_in("errors: {except: [{object: upper, translation: 1}]}\n"),

@@ -221,7 +221,7 @@ TEST(SecondWitness, SeesABumpedCamera) {
   EXPECT_GT(watched.pictures_until_denied(0), 0);
 }
 
-// The smallest of these sizes with which a fault is found, whichever way it goes, within 5
+// The smallest of these sizes with which a fault is found, in either direction, within 5
 // pictures; infinity: none.
 template <class Apply>
 double smallest_found(const Apply& apply, std::initializer_list<double> sizes) {
@@ -239,19 +239,14 @@ double smallest_found(const Apply& apply, std::initializer_list<double> sizes) {
 }
 
 TEST(SecondWitness, FindsSmallFaults) {
-  const std::initializer_list<double> angles = {0.005, 0.01, 0.02, 0.04, 0.08, 0.16, 0.32};
-  const std::initializer_list<double> lengths = {0.005, 0.01, 0.02, 0.04, 0.08};
-  for (const auto& [joint, most] : {std::pair("left_joint1", 0.08),
-                                    {"left_joint2", 0.04},
-                                    {"left_joint3", 0.16},
-                                    {"left_joint4", 0.08},
-                                    {"left_joint6", 0.32}}) {
+  const std::initializer_list<double> angles = {0.01, 0.02, 0.04}, lengths = {0.005, 0.01};
+  for (const auto& [joint, most] :
+       {std::pair("left_joint1", 0.04), {"left_joint2", 0.01}, {"left_joint4", 0.02}}) {
     const auto lose_zero = [&, name = joint](WitnessedCell& watched, double by) {
       watched.off()[variable_of(watched.cell(), name)] = by;
     };
     const double found = smallest_found(lose_zero, angles);
     EXPECT_LE(found, most) << joint;
-    std::printf("zero of %s: %g rad\n", joint, found);
   }
   for (int axis = 0; axis < 3; ++axis) {
     const auto bump_base = [&](WitnessedCell& watched, double by) {
@@ -262,8 +257,7 @@ TEST(SecondWitness, FindsSmallFaults) {
     };
     const double base = smallest_found(bump_base, lengths);
     const double camera = smallest_found(bump_camera, lengths);
-    EXPECT_LE(std::max(base, camera), 0.08) << axis;
-    std::printf("shift along %c: base %g m, camera %g m\n", "xyz"[axis], base, camera);
+    EXPECT_LE(std::max(base, camera), 0.01) << axis;
   }
 }
 

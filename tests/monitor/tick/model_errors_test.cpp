@@ -265,14 +265,12 @@ std::vector<double> excesses(const Scene& scene, std::uint64_t seeds) {
 }
 
 TEST(ModelErrors, OfTwoArmsAreAtMostAFewPercentAboveTheWorstMachine) {
-  Scene scene =
-      two_arms_with("errors: {joints: {position: 0.0002, translation: 0.0003}}\n");
+  Scene scene = two_arms_with("errors: {joints: {position: 0.0002, translation: 0.0003}}\n");
   scene.evaluate_all = true;
   const std::vector<double> ratios = excesses(scene, repeats(40));
   ASSERT_GT(ratios.size(), 500u);
   EXPECT_LT(ratios[ratios.size() / 2], 1.02);
   EXPECT_LT(ratios[ratios.size() * 99 / 100], 1.15);
-  std::printf("%zu %g %g %g %g\n", ratios.size(), ratios[0], ratios[ratios.size() / 2], ratios[ratios.size() * 99 / 100], ratios.back());
 }
 
 TEST(ModelErrors, WithoutAnyTheReportIsTheSame) {

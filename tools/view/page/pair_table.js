@@ -105,7 +105,7 @@ export class PairTable {
     if (row.dataset.pair !== String(pair.pair)) row.dataset.pair = pair.pair;
     row.className = `${chosen.has(pair.pair) ? "chosen" : ""} ${known ? "" : "lost"}`;
     row.style.setProperty("--mark", `var(${COLOUR[state.levelOf(pair)]})`);
-    row.title = `${name}: ${STATUS[pair.status]}, bounds ${pair.lower} to ${pair.upper} m, refreshed ${pair.refresh_age_cycles} ticks ago`;
+    row.title = `${name}: ${STATUS[pair.status]}, bounds ${pair.lower} to ${pair.upper} m${pair.model_error > 0 ? ` (stated errors: ${mm(pair.model_error, 1)})` : ""}, refreshed ${pair.refresh_age_cycles} ticks ago`;
     const age = ageOf(pair);
     [name, known ? mm(pair.distance) : STATUS[pair.status], mm(pair.lower, known ? 1 : 0), signed(pair.closing_speed, 2), contact(pair.time_to_contact),
       age === Infinity ? "never" : milliseconds(age)].forEach((text, i) => put(row.cells[i], text));
