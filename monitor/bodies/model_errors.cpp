@@ -173,7 +173,10 @@ ErrorAlong ModelErrors::along(const PosedPart& a, const PosedPart& b, const Vec3
   Vec3 at;
   const PosedPart* on = nullptr;
   bool is_pointed = false;
-  for (const PosedPart* part : {&a, &b}) {
+  // What is nearer to its sources has shorter lever arms, and less of second order.
+  const bool b_is_first = chains.tip_a == chains.common;
+  const PosedPart* const parts[] = {b_is_first ? &b : &a, b_is_first ? &a : &b};
+  for (const PosedPart* part : parts) {
     if (is_pointed || !has_points(*part)) continue;
     Vec3 point;
     const double most =
@@ -185,15 +188,17 @@ ErrorAlong ModelErrors::along(const PosedPart& a, const PosedPart& b, const Vec3
   }
   if (on == nullptr) return {between.largest, 0.0};
   if (!is_pointed) {
-    for (const PosedPart* part : {&a, &b}) {
+    for (const PosedPart* part : parts) {
       if (!has_points(*part) || part->shape->is_curved()) continue;
       first = std::min(first, most_on_vertices(*part, part == &a ? normal : Vec3(-normal), chains));
     }
   }
 
-  // No point of either part is farther from `at` than `across`, or from an origin than `arm`.
-  const double across = 2.0 * (has_points(a) ? a.sphere_in_world.radius : 0.0) +
-                        2.0 * (has_points(b) ? b.sphere_in_world.radius : 0.0);
+  // No point that was tried is farther from `at` than `across`, or from an origin than `arm`.
+  double across = 2.0 * on->sphere_in_world.radius;
+  if (!is_pointed && has_points(a) && has_points(b))
+    across = 2.0 * (a.sphere_in_world.radius + b.sphere_in_world.radius) +
+             length_at_most(a.sphere_in_world.centre - b.sphere_in_world.centre);
   const auto arm_of = [&](std::uint32_t tip, const Sums& sums) {
     return tip == chains.common ? 0.0 : length_at_most(at - origins_[tip]) + sums.length + across;
   };

@@ -42,8 +42,9 @@ inline PairMotion motion_since_last_tick(const PairEntry& entry, const TickView&
 // Bounds of a part pair by its direction, for all postures within the stated errors. `exact`: for
 // the model as stated. Two points of the bodies are apart by the distance and the error along the
 // direction, and by the whole error across it.
-void note_errors(const Queried& queried, DistanceStatus status, const DistanceBounds& exact,
-                 bool was_last_tick, const PairMotion& motion, const OpenTick& tick) noexcept {
+[[gnu::noinline]] void note_errors(const Queried& queried, DistanceStatus status,
+                                   const DistanceBounds& exact, bool was_last_tick,
+                                   const PairMotion& motion, const OpenTick& tick) noexcept {
   ErrorBounds& errors = tick.table.errors[queried.part_pair];
   const double lower_last_tick = was_last_tick ? errors.lower : -kInfinity;
   errors.lower_before = lower_last_tick;
@@ -80,7 +81,8 @@ inline double write_answer(const DistanceResult& found, const Vec3& point_on_b,
   const auto& [part_pair, a, b, evaluation] = queried;
   // The carried bounds are true as well, and a query that was cut short may be looser.
   const DistanceBounds exact = for_exact_poses(found, a, b);
-  const DistanceBounds bounds = widened(exact, table.largest_error(part_pair));
+  const bool has_errors = tick.errors != nullptr;
+  const DistanceBounds bounds = has_errors ? widened(exact, table.largest_error(part_pair)) : exact;
   const double lower = std::max(known.lower, bounds.lower);
   const double upper = std::min(known.upper, bounds.upper);
   table.lower[part_pair] = lower;
@@ -100,7 +102,7 @@ inline double write_answer(const DistanceResult& found, const Vec3& point_on_b,
   evaluation.status = found.status;
   const bool was_last_tick = table.evaluations.cycle(part_pair) + 1 == tick.cycle;
   table.evaluations.set_cycle(part_pair, tick.cycle);
-  if (tick.errors != nullptr) {
+  if (has_errors) [[unlikely]] {
     note_errors(queried, found.status, exact, was_last_tick, motion, tick);
     closest.lower =
         found.status == DistanceStatus::kConverged ? table.errors[part_pair].lower : -kInfinity;
@@ -109,7 +111,7 @@ inline double write_answer(const DistanceResult& found, const Vec3& point_on_b,
   const double between =
       lower_by_directions({normal_before, lower_before}, {closest.normal, closest.lower},
                           motion.displacement, motion.bend);
-  return tick.errors == nullptr ? between : between - table.errors[part_pair].drift;
+  return has_errors ? between - table.errors[part_pair].drift : between;
 }
 
 // The same for what a sensor sees. Its direction separates no more than the nearest element, so it

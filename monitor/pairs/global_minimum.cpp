@@ -12,8 +12,8 @@ void GlobalMinimum::add(std::uint32_t pair, const PairBounds& bounds) noexcept {
   if (!is_known(bounds.status)) return;
 
   // Stated errors leave more open than any work could take away.
-  const double stated = bounds.model_error + bounds.model_excess;
-  const bool tight = is_evaluated(bounds.status) && are_tight(bounds.lower, bounds.upper - stated);
+  const bool tight =
+      is_evaluated(bounds.status) && are_tight(bounds.lower, bounds.upper - bounds.stated_width);
   if (!tight && bounds.lower < loose_lower_) {
     if (pair != loose_pair_) next_loose_lower_ = loose_lower_;
     loose_lower_ = bounds.lower;

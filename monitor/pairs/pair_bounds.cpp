@@ -134,11 +134,12 @@ PairBounds bounds_of_one_part_pair(std::uint32_t pair, const TrackedObject& a,
 
 // Replaces bounds that hold for all postures within the stated errors by those along the directions
 // of this tick's evaluations.
-void narrow(std::uint32_t pair, const TrackedObject& a, const TrackedObject& b,
-            const TickView& view, SweptPrecision precision, PairBounds& bounds) noexcept {
+[[gnu::noinline]] void narrow(std::uint32_t pair, const TrackedObject& a, const TrackedObject& b,
+                              const TickView& view, SweptPrecision precision,
+                              PairBounds& bounds) noexcept {
   const PairTable& table = view.pairs;
   const ErrorBounds& closest = table.errors[bounds.part_pair];
-  bounds.model_error = bounds.model_excess = closest.between.largest;
+  bounds.stated_width = 2.0 * closest.between.largest;
   if (!a.plain || !b.plain || !is_evaluated(pair, view)) return;
   const double lower_last_tick = table.entries[pair].lower_before;
   double lower = kInfinity, before = kInfinity, drift = 0.0;
@@ -153,9 +154,9 @@ void narrow(std::uint32_t pair, const TrackedObject& a, const TrackedObject& b,
     if (is_new) drift = std::max(drift, errors.drift);
   }
   if (table.evaluations.cycle(bounds.part_pair) == view.cycle) {
-    bounds.model_error = closest.loss;
     const double upper = std::min(bounds.upper, closest.upper);
-    bounds.model_excess -= std::max(0.0, bounds.upper - upper);
+    bounds.stated_width -=
+        closest.between.largest - closest.loss + std::max(0.0, bounds.upper - upper);
     bounds.upper = std::max(upper, lower);
     bounds.swept_upper = std::min(bounds.swept_upper, bounds.upper);
   }
@@ -233,6 +234,14 @@ PairBounds bounds_of(std::uint32_t pair, const TickView& view, SweptPrecision pr
   return bounds;
 }
 
+// By the direction of this tick's evaluation, if the bounds are by that.
+double model_error(const PairBounds& bounds, const TickView& view) noexcept {
+  const ErrorBounds& errors = view.pairs.errors[bounds.part_pair];
+  const bool is_new = is_evaluated(bounds.status) && bounds.evaluated_cycle == view.cycle;
+  return is_new && bounds.stated_width < 2.0 * errors.between.largest ? errors.loss
+                                                                      : errors.between.largest;
+}
+
 void write_pair(std::uint32_t pair, const PairBounds& bounds, const TickView& view,
                 PairReport& report) noexcept {
   const PairTable& table = view.pairs;
@@ -249,7 +258,7 @@ void write_pair(std::uint32_t pair, const PairBounds& bounds, const TickView& vi
   report.lower = bounds.lower;
   report.swept_lower = bounds.swept_lower;
   report.upper = bounds.upper;
-  report.model_error = bounds.model_error;
+  report.model_error = view.errors == nullptr ? 0.0 : model_error(bounds, view);
   const ClosestPoints& closest = table.evaluations[bounds.part_pair].closest;
   report.part_a = view.parts[table.part_a(bounds.part_pair)].index_in_object;
   report.part_b = view.parts[table.part_b(bounds.part_pair)].index_in_object;

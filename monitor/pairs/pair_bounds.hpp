@@ -17,8 +17,7 @@ struct PairBounds {
   double swept_upper = kInfinity;     // at some instant it was not more than this, m
   std::uint32_t part_pair = 0;        // with the smallest upper bound: mostly the closest one
   std::uint64_t evaluated_cycle = 0;  // of that part pair; 0: no part pair was ever evaluated
-  // m: by which `lower` is below, and `upper` above, the bounds for the model as stated.
-  double model_error = 0.0, model_excess = 0.0;
+  double stated_width = 0.0;          // m: the part of upper - lower that stated errors make
 };
 
 // The motion by which the time since the last tick is bounded.

@@ -296,7 +296,7 @@ TEST_F(SceneProgram, ListsWhatEachJointAddsToThePairsBounds) {
   std::ofstream(directory_ / "chain.urdf") << chain_urdf();
   std::ofstream(directory_ / "cell.yaml") << uncertain_chain("0.01");
   EXPECT_EQ(run({"errors", file("cell.yaml"), "--joint", "j=0.5"}), 0) << output_;
-  EXPECT_NE(output_.find("c - post"), std::string::npos) << output_;
+  EXPECT_NE(output_.find("post - c"), std::string::npos) << output_;
   EXPECT_NE(output_.find("1.00 the joint 'k'"), std::string::npos) << output_;
   EXPECT_EQ(run({"errors", file("cell.yaml"), "--joint", "jj=0.5"}), 1);
   EXPECT_NE(output_.find("jj"), std::string::npos) << output_;

@@ -210,13 +210,13 @@ void SimulatedCamerasTest::judge(const std::string& file) {
                                         dds_arguments(dds)));
     EXPECT_EQ(simulated.wait(), 0);
     EXPECT_FALSE(simulated.wrote(" 0 pixels")) << simulated.output();
-    // "truth    hand - camera: 41 reports, least true distance ..., 0 above it"
+    // "truth    hand - camera: 41 reports, least true distance ..., 0 not within the bounds"
     std::istringstream lines(simulated.output());
     pairs = 0;
     for (std::string line; std::getline(lines, line);) {
       if (!line.starts_with("truth ") || line.find(", least true ") == line.npos) continue;
       ++pairs;
-      EXPECT_TRUE(line.ends_with(", 0 above it")) << line;
+      EXPECT_TRUE(line.ends_with(", 0 not within the bounds")) << line;
     }
   }
   EXPECT_EQ(pairs, 10u);

@@ -86,11 +86,11 @@ class EveryField : public testing::Test {
     ASSERT_TRUE(cell && std::holds_alternative<Cell>(*cell));
     cell_ = std::get<Cell>(std::move(*cell));
     messages_ = messages_of(kRecording);
-    take_gradients_of_this_build();
+    take_newer_messages();
   }
 
-  // Gradients have fields that are newer than the recording.
-  void take_gradients_of_this_build() {
+  // Gradients and distances have fields that are newer than the recording.
+  void take_newer_messages() {
     const std::filesystem::path file = folder_ / "again.mcap";
     ReportRecorder again(file, cell_);
     const OfflineReplay replay =
@@ -98,12 +98,14 @@ class EveryField : public testing::Test {
     ASSERT_TRUE(replay.ok()) << replay.text();
     ASSERT_TRUE(again.close());
     std::vector<Kept> made = messages_of(file);
-    std::erase_if(made, [](const Kept& kept) { return kept.kind != TopicKind::kGradients; });
-    auto next = made.begin();
-    for (Kept& message : messages_) {
-      if (message.kind != TopicKind::kGradients) continue;
-      ASSERT_NE(next, made.end());
-      message.cdr = (next++)->cdr;
+    for (const TopicKind kind : {TopicKind::kGradients, TopicKind::kDistances}) {
+      auto next = made.begin();
+      for (Kept& message : messages_) {
+        if (message.kind != kind) continue;
+        next = std::ranges::find(next, made.end(), kind, &Kept::kind);
+        ASSERT_NE(next, made.end());
+        message.cdr = (next++)->cdr;
+      }
     }
   }
 
