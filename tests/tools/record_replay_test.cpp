@@ -264,6 +264,8 @@ TEST_F(RecordReplay, ANumberThatIsNoneIsWrongUsage) {
   EXPECT_THAT(output, HasSubstr("found '-1'; expected a number, 0 or more"));
   EXPECT_EQ(2, run(kReplay, {"publish", path("run.mcap"), "--rate", "inf"}));
   EXPECT_THAT(output, HasSubstr("found 'inf'; expected a number above 0"));
+  EXPECT_EQ(2, replay({"--allow-unknown", "nan"}));
+  EXPECT_THAT(output, HasSubstr("found 'nan'; expected a number from 0 to 1"));
 }
 
 TEST_F(RecordReplay, WritesOverOtherFilesOnlyWhenForced) {

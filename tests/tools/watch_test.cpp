@@ -76,7 +76,7 @@ TEST(Watch, KeepsTheLastStateAndItsNamesWhenTheDaemonEndsFirst) {
   ChildProcess watch(kWatch, with({"--plain"}, dds));
   ChildProcess daemon(kDaemon, with({cell.path()}, dds));
   ChildProcess robot(kRobot, with({cell.path(), "--rate", "200"}, dds));
-  ASSERT_TRUE(eventually([&] { return watch.wrote("left - right"); })) << watch.output();
+  ASSERT_TRUE(eventually([&] { return watch.wrote("  minimum "); })) << watch.output();
   daemon.signal(SIGTERM);
   EXPECT_EQ(daemon.wait(), 0);
   ASSERT_TRUE(eventually([&] { return watch.wrote("clearanced has ended "); })) << watch.output();
@@ -97,7 +97,7 @@ TEST(Watch, SaysThatAMinimumWasOneWhenTheDaemonHasEnded) {
   ChildProcess watch("/usr/bin/env", {"TERM=xterm", "script", "-qfec", command, "/dev/null"});
   ChildProcess daemon(kDaemon, with({cell.path()}, dds));
   ChildProcess robot(kRobot, with({cell.path(), "--rate", "200"}, dds));
-  ASSERT_TRUE(eventually([&] { return watch.wrote("left - right"); })) << watch.output();
+  ASSERT_TRUE(eventually([&] { return watch.wrote(" m  "); })) << watch.output();
   const std::string live = watch.output();
   EXPECT_EQ(live.find("was "), std::string::npos) << live;
   daemon.signal(SIGTERM);
