@@ -35,6 +35,14 @@ LinkState base_at(const TrackedObject& object) noexcept {
   return base;
 }
 
+// A link that a camera does not see where its joints say may be anywhere.
+LinkState denied_state(const LinkState& placed) noexcept {
+  LinkState state = placed;
+  state.late = state.contradicted = true;
+  state.unobserved_shift = kInfinity;
+  return state;
+}
+
 }  // namespace
 
 RobotInputs::RobotInputs(const Scene& scene)
@@ -148,12 +156,12 @@ void RobotInputs::place(std::int64_t now_ns, std::span<TrackedObject> objects) n
       const Object& object = scene_.objects[links[link].object];
       TrackedObject& state = objects[links[link].object];
       if (object.fixed || state.absent) continue;
-      LinkState link_state = kinematics_.links(robot)[link];
+      const LinkState& placed = kinematics_.links(robot)[link];
       if (denied) {
-        link_state.late = link_state.contradicted = true;
-        link_state.unobserved_shift = kInfinity;
+        follow(denied_state(placed), object, now_ns, state);
+      } else {
+        follow(placed, object, now_ns, state);
       }
-      follow(link_state, object, now_ns, state);
     }
   }
 }

@@ -6,14 +6,12 @@
 
 namespace clearance {
 
-void GlobalMinimum::add(std::uint32_t pair, const PairBounds& bounds) noexcept {
+void GlobalMinimum::add(std::uint32_t pair, const PairBounds& bounds, double stated) noexcept {
   lower_ = std::min(lower_, bounds.lower);
   swept_lower_ = std::min(swept_lower_, bounds.swept_lower);
   if (!is_known(bounds.status)) return;
 
-  // Stated errors leave more open than any work could take away.
-  const bool tight =
-      is_evaluated(bounds.status) && are_tight(bounds.lower, bounds.upper - bounds.stated_width);
+  const bool tight = is_evaluated(bounds.status) && are_tight(bounds.lower, bounds.upper - stated);
   if (!tight && bounds.lower < loose_lower_) {
     if (pair != loose_pair_) next_loose_lower_ = loose_lower_;
     loose_lower_ = bounds.lower;

@@ -10,8 +10,9 @@ namespace clearance {
 
 class GlobalMinimum {
  public:
-  // Takes in a pair; the same pair may come again.
-  void add(std::uint32_t pair, const PairBounds& bounds) noexcept;
+  // Takes in a pair; the same pair may come again. `stated`: the part of the width of its bounds
+  // that stated errors make, m. No work could take that away.
+  void add(std::uint32_t pair, const PairBounds& bounds, double stated = 0.0) noexcept;
 
   // The distance of every pair that was not added is at least `lower`, m, and since the last tick
   // it was at least `swept_lower`.

@@ -134,12 +134,12 @@ PairBounds bounds_of_one_part_pair(std::uint32_t pair, const TrackedObject& a,
 
 // Replaces bounds that hold for all postures within the stated errors by those along the directions
 // of this tick's evaluations.
-[[gnu::noinline]] void narrow(std::uint32_t pair, const TrackedObject& a, const TrackedObject& b,
-                              const TickView& view, SweptPrecision precision,
+[[gnu::noinline]] void narrow(std::uint32_t pair, const TickView& view, SweptPrecision precision,
                               PairBounds& bounds) noexcept {
   const PairTable& table = view.pairs;
+  const TrackedObject& a = view.objects[table.entries[pair].object_a];
+  const TrackedObject& b = view.objects[table.entries[pair].object_b];
   const ErrorBounds& closest = table.errors[bounds.part_pair];
-  bounds.stated_width = 2.0 * closest.between.largest;
   if (!a.plain || !b.plain || !is_evaluated(pair, view)) return;
   const double lower_last_tick = table.entries[pair].lower_before;
   double lower = kInfinity, before = kInfinity, drift = 0.0;
@@ -155,8 +155,6 @@ PairBounds bounds_of_one_part_pair(std::uint32_t pair, const TrackedObject& a,
   }
   if (table.evaluations.cycle(bounds.part_pair) == view.cycle) {
     const double upper = std::min(bounds.upper, closest.upper);
-    bounds.stated_width -=
-        closest.between.largest - closest.loss + std::max(0.0, bounds.upper - upper);
     bounds.upper = std::max(upper, lower);
     bounds.swept_upper = std::min(bounds.swept_upper, bounds.upper);
   }
@@ -165,6 +163,14 @@ PairBounds bounds_of_one_part_pair(std::uint32_t pair, const TrackedObject& a,
       lower_between_ticks(a, b, before, lower, lower_by_evaluations(pair, view), precision);
   bounds.swept_lower = std::max(bounds.swept_lower, rounded_down(swept - drift));
   bounds.swept_lower = std::min(bounds.swept_lower, bounds.lower);
+}
+
+// By the direction of this tick's evaluation, if the bounds are by that.
+double model_error(const PairBounds& bounds, const TrackedObject& a, const TrackedObject& b,
+                   const TickView& view) noexcept {
+  const ErrorBounds& errors = view.pairs.errors[bounds.part_pair];
+  const bool is_new = is_evaluated(bounds.status) && bounds.evaluated_cycle == view.cycle;
+  return is_new && a.plain && b.plain ? errors.loss : errors.between.largest;
 }
 
 // Widens the bounds by the unobserved motion of late objects.
@@ -183,6 +189,31 @@ void count_lateness_in(const TrackedObject& a, const TrackedObject& b,
   bounds.upper = rounded_up(bounds.upper + may_have_moved);
   bounds.swept_lower = std::min(bounds.lower, bounds.swept_lower);
   if (is_late) bounds.status = PairStatus::kStale;
+}
+
+// The bounds in the table, brought together.
+PairBounds bounds_by_table(std::uint32_t pair, const TickView& view,
+                           SweptPrecision precision) noexcept {
+  const PairEntry& entry = view.pairs.entries[pair];
+  const TrackedObject& a = view.objects[entry.object_a];
+  const TrackedObject& b = view.objects[entry.object_b];
+  const bool carried = is_carried(pair, view);
+  if (a.plain && b.plain && carried && view.pairs.part_pairs_of(pair) == 1) {
+    return bounds_of_one_part_pair(pair, a, b, view, precision);
+  }
+  PairBounds bounds;
+  if (a.absent || b.absent) bounds.status = PairStatus::kAbsent;
+  if (!a.known() || !b.known()) return bounds;
+  const DistanceBounds now =
+      carried ? bounds_as_carried(pair, view.pairs) : pair_bounds_now(pair, view);
+  bounds.lower = now.lower;
+  bounds.upper = bounds.swept_upper = now.upper;
+  bounds.swept_lower = lower_since_last_tick(pair, now.lower, view, precision);
+  bounds.part_pair = closest_part_pair(pair, view.pairs);
+  bounds.evaluated_cycle = view.pairs.evaluations.cycle(bounds.part_pair);
+  bounds.status = evaluated_status(pair, bounds.part_pair, view);
+  if (!a.plain || !b.plain) count_lateness_in(a, b, bounds);
+  return bounds;
 }
 
 }  // namespace
@@ -209,37 +240,20 @@ double lower_since_last_tick(std::uint32_t pair, double lower, const TickView& v
 }
 
 PairBounds bounds_of(std::uint32_t pair, const TickView& view, SweptPrecision precision) noexcept {
-  const PairEntry& entry = view.pairs.entries[pair];
-  const TrackedObject& a = view.objects[entry.object_a];
-  const TrackedObject& b = view.objects[entry.object_b];
-  const bool carried = is_carried(pair, view);
-  if (a.plain && b.plain && carried && view.pairs.part_pairs_of(pair) == 1) {
-    PairBounds bounds = bounds_of_one_part_pair(pair, a, b, view, precision);
-    if (view.errors != nullptr) narrow(pair, a, b, view, precision, bounds);
-    return bounds;
-  }
-  PairBounds bounds;
-  if (a.absent || b.absent) bounds.status = PairStatus::kAbsent;
-  if (!a.known() || !b.known()) return bounds;
-  const DistanceBounds now =
-      carried ? bounds_as_carried(pair, view.pairs) : pair_bounds_now(pair, view);
-  bounds.lower = now.lower;
-  bounds.upper = bounds.swept_upper = now.upper;
-  bounds.swept_lower = lower_since_last_tick(pair, now.lower, view, precision);
-  bounds.part_pair = closest_part_pair(pair, view.pairs);
-  bounds.evaluated_cycle = view.pairs.evaluations.cycle(bounds.part_pair);
-  bounds.status = evaluated_status(pair, bounds.part_pair, view);
-  if (view.errors != nullptr) narrow(pair, a, b, view, precision, bounds);
-  if (!a.plain || !b.plain) count_lateness_in(a, b, bounds);
+  if (view.errors == nullptr) [[likely]]
+    return bounds_by_table(pair, view, precision);
+  PairBounds bounds = bounds_by_table(pair, view, precision);
+  narrow(pair, view, precision, bounds);
   return bounds;
 }
 
-// By the direction of this tick's evaluation, if the bounds are by that.
-double model_error(const PairBounds& bounds, const TickView& view) noexcept {
-  const ErrorBounds& errors = view.pairs.errors[bounds.part_pair];
-  const bool is_new = is_evaluated(bounds.status) && bounds.evaluated_cycle == view.cycle;
-  return is_new && bounds.stated_width < 2.0 * errors.between.largest ? errors.loss
-                                                                      : errors.between.largest;
+double stated_width(std::uint32_t pair, const PairBounds& bounds, const TickView& view) noexcept {
+  const PairEntry& entry = view.pairs.entries[pair];
+  const double below =
+      model_error(bounds, view.objects[entry.object_a], view.objects[entry.object_b], view);
+  // The table's upper bound contains the largest error.
+  const double above = view.pairs.largest_error(bounds.part_pair);
+  return below + above - std::max(0.0, upper_of(pair, view.pairs) - bounds.upper);
 }
 
 void write_pair(std::uint32_t pair, const PairBounds& bounds, const TickView& view,
@@ -258,7 +272,7 @@ void write_pair(std::uint32_t pair, const PairBounds& bounds, const TickView& vi
   report.lower = bounds.lower;
   report.swept_lower = bounds.swept_lower;
   report.upper = bounds.upper;
-  report.model_error = view.errors == nullptr ? 0.0 : model_error(bounds, view);
+  report.model_error = view.errors == nullptr ? 0.0 : model_error(bounds, a, b, view);
   const ClosestPoints& closest = table.evaluations[bounds.part_pair].closest;
   report.part_a = view.parts[table.part_a(bounds.part_pair)].index_in_object;
   report.part_b = view.parts[table.part_b(bounds.part_pair)].index_in_object;

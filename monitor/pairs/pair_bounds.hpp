@@ -17,7 +17,6 @@ struct PairBounds {
   double swept_upper = kInfinity;     // at some instant it was not more than this, m
   std::uint32_t part_pair = 0;        // with the smallest upper bound: mostly the closest one
   std::uint64_t evaluated_cycle = 0;  // of that part pair; 0: no part pair was ever evaluated
-  double stated_width = 0.0;          // m: the part of upper - lower that stated errors make
 };
 
 // The motion by which the time since the last tick is bounded.
@@ -29,6 +28,10 @@ enum class SweptPrecision : std::uint8_t {
 // The bounds of any pair, whether it was brought up to date in this tick or not.
 [[nodiscard]] PairBounds bounds_of(std::uint32_t pair, const TickView& view,
                                    SweptPrecision precision) noexcept;
+
+// The part of upper - lower that stated errors make, m, in a scene that states some.
+[[nodiscard]] double stated_width(std::uint32_t pair, const PairBounds& bounds,
+                                  const TickView& view) noexcept;
 
 // A lower bound of a known pair's distance since the last tick, m, for the poses in use; `lower` is
 // the bound for the poses of this tick.

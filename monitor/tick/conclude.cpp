@@ -34,7 +34,8 @@ Conclusion conclude(const Published& published, const Displacements& displaced,
   std::size_t updated = 0;
   const auto add = [&](std::uint32_t pair, const PairBounds& bounds) {
     ++updated;
-    conclusion.minimum.add(pair, bounds);
+    conclusion.minimum.add(pair, bounds,
+                           view.errors == nullptr ? 0.0 : stated_width(pair, bounds, view));
     zones.add(pair, bounds);
     conclusion.evaluated += is_evaluated(bounds.status);
   };
