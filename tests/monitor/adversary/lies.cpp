@@ -174,9 +174,11 @@ Admissible admissible(const Fault& fault) {
     case Lie::kFreezeInMotion:
     case Lie::kHalfSpeed:
       return {0, 10.5};
-    // The frozen limit is the time that the cell grants. The next sample shows that it has passed.
+    // The frozen limit is the time that the cell grants, from the first repeated sample on, which
+    // may come a period of 2 ms after the fault. The next sample after the limit shows that it has
+    // passed, and takes up to 5 ms.
     case Lie::kFreezeAtRest:
-      return {kFrozenLimit + 5 * kMs, 0.0};
+      return {kFrozenLimit + 10 * kMs, 0.0};
     // Positions are compared with one that is up to six age limits old, with one in hand.
     case Lie::kDrift:
       return {7 * age_limit(fault.channel), 1.0};
