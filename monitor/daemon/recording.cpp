@@ -269,7 +269,8 @@ void Recording::tell_of_missing_files() const {
 void Recording::tell_of_new_files() {
   if (recorder_.files() == files_) return;
   files_ = recorder_.files();
-  log_line(by_event_ ? lines::kEventRecorded : lines::kRecordingContinues,
+  const bool is_event = std::exchange(events_, recorder_.events()) != recorder_.events();
+  log_line(is_event ? lines::kEventRecorded : lines::kRecordingContinues,
            recorder_.file().string());
 }
 

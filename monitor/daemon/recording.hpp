@@ -104,7 +104,7 @@ class Recording {
 
   std::string file_;  // the first one
   bool by_event_;
-  std::uint64_t files_;  // files that the log has named
+  std::uint64_t files_, events_ = 0;  // those that the log has named
   std::uint64_t clouds_every_, frames_ = 0;
   const PoseReader& poses_;
   FrameUses uses_;

@@ -177,6 +177,7 @@ void EventFiles::keep(RingMessage message) {
 
 bool EventFiles::end_tick(std::int64_t now_ns, const std::optional<RecordedEvent>& event) {
   is_first_tick_ = false;
+  const bool was_written = writer_.has_value();
   if (event && ok()) {
     if (!writer_) begin(now_ns);
     if (writer_)
@@ -187,7 +188,7 @@ bool EventFiles::end_tick(std::int64_t now_ns, const std::optional<RecordedEvent
   } else if (writer_ && now_ns >= until_ns_) {
     end();
   }
-  if (writer_) continue_file(now_ns);
+  if (was_written && writer_) continue_file(now_ns);
   keep_error();
   ring_.drop_before(now_ns - options_.events.around_ns);
   forget_scenes();
@@ -210,6 +211,7 @@ void EventFiles::begin(std::int64_t now_ns) {
       pattern_.parent_path() / fmt::format("{}-{}{}", pattern_.stem().string(), stamp_of(now_ns),
                                            pattern_.extension().string());
   writer_.emplace(first_free(name), topics_, options_);
+  ++events_;
   written_scene_ = 0;
   std::optional<std::int64_t> first_tick_ns;
   ring_.for_each([&](const RingMessage& message) {

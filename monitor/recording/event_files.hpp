@@ -56,6 +56,7 @@ class EventFiles final : public RecordingSink {
   [[nodiscard]] std::uint64_t files() const noexcept override {
     return files_ + (writer_ ? writer_->part() : 0);
   }
+  [[nodiscard]] std::uint64_t events() const noexcept override { return events_; }
 
  private:
   // Both are as the scene was read. The files on the disk may change before an event.
@@ -88,6 +89,7 @@ class EventFiles final : public RecordingSink {
   int checks_ = 0;
   std::string error_;
   std::uint64_t messages_ = 0, bytes_ = 0, files_ = 0;  // of files that have ended
+  std::uint64_t events_ = 0;
 };
 
 }  // namespace clearance

@@ -77,6 +77,7 @@ class Recorder {
   // The file that is written, or was last, and how many there are by now.
   [[nodiscard]] const std::filesystem::path& file() const noexcept { return sink_->file(); }
   [[nodiscard]] std::uint64_t files() const noexcept { return sink_->files(); }
+  [[nodiscard]] std::uint64_t events() const noexcept { return sink_->events(); }
 
  private:
   // State that follows from the scene.

@@ -44,6 +44,8 @@ class RecordingSink {
   // The file that was begun last, and how many were.
   [[nodiscard]] virtual const std::filesystem::path& file() const noexcept = 0;
   [[nodiscard]] virtual std::uint64_t files() const noexcept = 0;
+  // The events that began a file. Other files continue one.
+  [[nodiscard]] virtual std::uint64_t events() const noexcept { return 0; }
 };
 
 // Everything, in one file or several.
