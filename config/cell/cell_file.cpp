@@ -173,8 +173,7 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   attach_objects(quantities, robots, list);
   mount_sensors(robots, list, quantities, sensors);
   errors_ = map.optional("errors");
-  if (errors_ != nullptr)
-    cell.scene.attached_error = read_errors(*errors_, quantities, robots, list);
+  if (errors_ != nullptr) read_errors(*errors_, quantities, robots, list, cell.scene);
   allow_by_matrices(list, robots.may_touch);
   note_mesh_errors(list);
   if (options_.mesh_errors != nullptr) *options_.mesh_errors = std::move(list.mesh_errors);

@@ -24,11 +24,12 @@ enum class Placed { kByJoints, kFixed, kBySender, kAttached, kBySensor };
 
 class ErrorReader {
  public:
-  ErrorReader(const Quantities& quantities, RobotList& robots, ObjectList& list)
+  ErrorReader(const Quantities& quantities, RobotList& robots, ObjectList& list, Scene& scene)
       : quantities_(quantities),
         diagnostics_(quantities.diagnostics()),
         robots_(robots),
         list_(list),
+        scene_(scene),
         placed_(list.objects.size(), Placed::kBySender) {
     for (std::size_t i = 0; i < placed_.size(); ++i) {
       const Object& object = list.objects[i];
@@ -45,13 +46,14 @@ class ErrorReader {
   }
 
   void read(const YamlNode& node);
-  [[nodiscard]] const PlaceError& attached() const noexcept { return attached_; }
 
  private:
   void read_place(MapReader& map, PlaceError& error);
   void read_joint(MapReader& map, JointError& error);
   std::optional<PlaceError> read_places(MapReader& map, const char* key, const char* what);
   void state(Placed how, const PlaceError& error);
+  void follow_masters();
+  [[nodiscard]] const RobotJoint* master_of(const Robot& robot, const RobotJoint& joint) const;
   void read_exception(const YamlNode& node);
   void read_joint_exception(const YamlNode& name, MapReader& map);
   void read_base_exception(const YamlNode& name, MapReader& map);
@@ -65,8 +67,8 @@ class ErrorReader {
   Diagnostics& diagnostics_;
   RobotList& robots_;
   ObjectList& list_;
+  Scene& scene_;
   std::vector<Placed> placed_;  // by object
-  PlaceError attached_;
 };
 
 // The base of a robot that follows a frame of tf is a floating joint, placed by a sender.
@@ -143,14 +145,15 @@ void ErrorReader::read(const YamlNode& node) {
   if (const auto fixed = read_places(map, "fixed", "the errors of fixed objects"))
     state(Placed::kFixed, *fixed);
   if (const auto attached = read_places(map, "attached", "the errors of attached objects")) {
-    attached_ = *attached;
-    state(Placed::kAttached, attached_);
+    scene_.attached_error = *attached;
+    state(Placed::kAttached, *attached);
   }
   if (const auto mounts = read_places(map, "mounts", "the errors of sensors' mounts"))
     state(Placed::kBySensor, *mounts);
   if (const YamlNode* shapes = map.optional("shapes")) {
     const double error =
         quantities_.length(*shapes, "the largest error of a shape", kNotNegative).value_or(0.0);
+    scene_.added_shape_error = error;
     for (Object& object : list_.objects)
       if (!object.is_seen()) object.shape_error = error;
   }
@@ -159,6 +162,29 @@ void ErrorReader::read(const YamlNode& node) {
       read_exception(item);
   }
   map.refuse_unknown_keys();
+  follow_masters();
+}
+
+// The position of a joint that mimics another is as wrong as that one's, times the factor.
+void ErrorReader::follow_masters() {
+  for (Robot& robot : robots_.robots) {
+    for (RobotJoint& joint : robot.joints) {
+      const RobotJoint* const master = master_of(robot, joint);
+      if (master == nullptr) continue;
+      const double error =
+          master->type == JointType::kPrismatic ? master->error.slide : master->error.position;
+      joint.error.position = joint.error.slide = error;
+    }
+  }
+}
+
+// Null: the joint mimics none.
+const RobotJoint* ErrorReader::master_of(const Robot& robot, const RobotJoint& joint) const {
+  if (variables_of(joint.type) != 1) return nullptr;
+  const std::string& name = robots_.variables[joint.variable].name;
+  if (joint.name == name) return nullptr;
+  const auto master = std::ranges::find(robot.joints, name, &RobotJoint::name);
+  return master == robot.joints.end() ? nullptr : &*master;
 }
 
 void ErrorReader::read_exception(const YamlNode& node) {
@@ -194,7 +220,15 @@ void ErrorReader::read_joint_exception(const YamlNode& node, MapReader& map) {
   for (Robot& robot : robots_.robots) {
     for (std::size_t i = is_on_tf(robot) ? 1 : 0; i < robot.joints.size(); ++i) {
       names.push_back(robot.joints[i].name);
-      if (name && robot.joints[i].name == *name) error = &robot.joints[i].error;
+      if (!name || robot.joints[i].name != *name) continue;
+      error = &robot.joints[i].error;
+      const RobotJoint* const master = master_of(robot, robot.joints[i]);
+      for (const char* key : {"position", "slide"}) {
+        if (const YamlNode* stated = master == nullptr ? nullptr : map.optional(key))
+          diagnostics_.add(*stated, fmt::format("found '{}' of '{}', which mimics another joint; "
+                                                "expected it of '{}'",
+                                                key, *name, master->name));
+      }
     }
   }
   read_joint(map, *error);
@@ -250,11 +284,9 @@ void ErrorReader::read_object_exception(const YamlNode& node, MapReader& map) {
 
 }  // namespace
 
-PlaceError read_errors(const YamlNode& node, const Quantities& quantities, RobotList& robots,
-                       ObjectList& list) {
-  ErrorReader reader(quantities, robots, list);
-  reader.read(node);
-  return reader.attached();
+void read_errors(const YamlNode& node, const Quantities& quantities, RobotList& robots,
+                 ObjectList& list, Scene& scene) {
+  ErrorReader(quantities, robots, list, scene).read(node);
 }
 
 void refuse_large_angles(const YamlNode& node, const Scene& scene, Diagnostics& diagnostics) {
@@ -267,6 +299,13 @@ void refuse_large_angles(const YamlNode& node, const Scene& scene, Diagnostics& 
                                       angle, scene.objects[i].name, kMostAngle));
     return;
   }
+  double most = 0.0;
+  for (std::uint32_t i = 0; i < scene.objects.size(); ++i)
+    most = std::max(most, errors.angle_of(i));
+  if (most + scene.attached_error.rotation <= kMostAngle) return;
+  diagnostics.add(node, fmt::format("found angles that add up to {:.3f} rad for what may be "
+                                    "attached; expected at most {} rad",
+                                    most + scene.attached_error.rotation, kMostAngle));
 }
 
 std::string unstated_errors(const Scene& scene) {

@@ -11,10 +11,10 @@ namespace clearance {
 
 struct Scene;
 
-// Reads `errors:` and states them in robots and objects. It comes after everything is placed.
-// Returns the error of attached objects, for those that come later.
-PlaceError read_errors(const YamlNode& node, const Quantities& quantities, RobotList& robots,
-                       ObjectList& list);
+// Reads `errors:` and states them in robots and objects; those of attached objects and of shapes
+// stay in `scene`, too, for what comes later. It comes after everything is placed.
+void read_errors(const YamlNode& node, const Quantities& quantities, RobotList& robots,
+                 ObjectList& list, Scene& scene);
 
 // Refuses errors whose angles add up to more than a chain can have.
 void refuse_large_angles(const YamlNode& node, const Scene& scene, Diagnostics& diagnostics);

@@ -102,6 +102,7 @@ struct Scene {
   bool evaluate_all = false;    // every pair in every tick, as if all were published; as far as the
                               // budget allows. For tables and measurements: cells do not ask for it
   std::int64_t future_limit_ns = 5'000'000;  // a stamp farther than this ahead of now is refused
+  double added_shape_error = 0.0;            // stated, m; of shapes that are added later
   PlaceError attached_error = {};  // stated; of what is attached and states none of its own
   bool gradients = false;          // of published pairs by the joints of robots, in every report
   std::vector<Object> objects;

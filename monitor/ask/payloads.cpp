@@ -78,6 +78,7 @@ std::optional<std::string> Attacher::object_of(const Payload& payload, std::uint
   object = static_cast<std::uint32_t>(scene_.objects.size());
   Object added;
   added.name = payload.name;
+  added.shape_error = scene_.added_shape_error;
   added.parts.push_back({payload.name, *payload.shape, Pose()});
   scene_.objects.push_back(std::move(added));
   return std::nullopt;

@@ -19,6 +19,15 @@ double length_at_most(const Vec3& v) noexcept {
   return std::abs(v.x()) + std::abs(v.y()) + std::abs(v.z());
 }
 
+// The angle between two orientations is twice the angle between their quaternions, which is at most
+// this for less than a radian.
+double turn_at_most(const Eigen::Quaterniond& p, const Eigen::Quaterniond& q) noexcept {
+  const double less = (p.coeffs() - q.coeffs()).cwiseAbs().sum();
+  const double more = (p.coeffs() + q.coeffs()).cwiseAbs().sum();
+  const double chord = std::min(less, more);
+  return chord < 0.4 ? 2.1 * chord : kInfinity;
+}
+
 // Only these have vertices, or a sphere around them, whose displacement bounds that of all points.
 bool has_points(const PosedPart& part) noexcept {
   return part.keeps_direction && part.shape->bounded();
@@ -39,6 +48,7 @@ ModelErrors::ModelErrors(const Scene& scene) : stated_(scene) {
     any_rotation_ = any_rotation_ || source.rotation > 0.0;
   }
   origins_.resize(parent_.size(), Vec3::Zero());
+  turns_.resize(parent_.size());
   sums_.resize(parent_.size());
   for (Sums& sums : sums_) sums.is_known = false;
 }
@@ -66,19 +76,21 @@ void ModelErrors::place(std::span<const TrackedObject> objects,
     const Eigen::Quaterniond turn = pose->orientation.normalized();
     const Vec3 origin = pose->position + turn * source.origin, axis = turn * source.axis;
     const double shifted = was_known ? length_at_most(origin - origins_[i]) : kInfinity;
-    const double turned = was_known ? length_at_most(axis - screws_[i].axis) : kInfinity;
+    const double turned = was_known ? turn_at_most(turn, turns_[i]) : kInfinity;
     const double angle = source.angle();
     sums.translation += source.translation;
     sums.slide += source.slide;
     sums.angle += angle;
     if (angle > 0.0) {
-      sums.drift_shift += angle * shifted;
+      // Between the ticks, the origin leaves its chord by an eighth of this at most.
+      sums.drift_shift += angle * (shifted + turned * turned * length_at_most(source.origin));
       sums.drift_turn += angle * turned;
     }
     if (source.slide > 0.0) sums.drift_shift += source.slide * turned;
     if (source.parent != ErrorSource::kNone)
       sums.length += length_at_most(origin - origins_[source.parent]);
     origins_[i] = origin;
+    turns_[i] = turn;
     screws_[i].axis = axis;
     screws_[i].moment = axis.cross(origin);
     farthest_ = std::max(farthest_, length_at_most(origin));
@@ -212,8 +224,15 @@ ErrorAlong ModelErrors::along(const PosedPart& a, const PosedPart& b, const Vec3
       rounding;
   // The parts' own motion changes their distance from the sources, too. Twice: between the ticks
   // they may be farther from both places than these are from each other.
-  const double drift = sums_a.drift_shift + sums_b.drift_shift + sums_a.drift_turn * arm_a +
-                       sums_b.drift_turn * arm_b + chains.angle * moved;
+  // The direction of the tick before may have been on the other part.
+  const double both = 2.0 * (has_points(a) ? a.sphere_in_world.radius : 0.0) +
+                      2.0 * (has_points(b) ? b.sphere_in_world.radius : 0.0) +
+                      (has_points(a) && has_points(b)
+                           ? length_at_most(a.sphere_in_world.centre - b.sphere_in_world.centre)
+                           : 0.0);
+  const double drift = sums_a.drift_shift + sums_b.drift_shift +
+                       sums_a.drift_turn * (arm_a + both) + sums_b.drift_turn * (arm_b + both) +
+                       chains.angle * moved;
   return {std::min(loss, between.largest), 2.0 * kOutward * drift};
 }
 

@@ -93,7 +93,8 @@ class ModelErrors {
   std::vector<std::uint32_t> parent_;
   std::vector<Screw> screws_;
   std::vector<Vec3> origins_;
-  std::vector<double> rotations_;  // rad
+  std::vector<Eigen::Quaterniond> turns_;  // of what carries it
+  std::vector<double> rotations_;          // rad
   std::vector<Sums> sums_;
   bool any_rotation_ = false;
   double farthest_ = 0.0;  // the largest coordinate of an origin, m

@@ -53,7 +53,11 @@ inline PairMotion motion_since_last_tick(const PairEntry& entry, const TickView&
   errors.loss = errors.between.largest;
   errors.drift = 0.0;
   const Vec3& normal = queried.evaluation.closest.normal;
-  if (normal.isZero(0.0) || !std::isfinite(exact.lower)) return;
+  // The direction of a query that was cut short need not prove its lower bound.
+  const bool is_proved = status == DistanceStatus::kConverged ||
+                         status == DistanceStatus::kTouching ||
+                         status == DistanceStatus::kOverlapping;
+  if (!is_proved || normal.isZero(0.0) || !std::isfinite(exact.lower)) return;
   const ErrorAlong along =
       tick.errors->along(queried.a, queried.b, normal, errors.between, motion.displacement);
   errors.loss = along.loss;

@@ -134,7 +134,7 @@ PairBounds bounds_of_one_part_pair(std::uint32_t pair, const TrackedObject& a,
 
 // Replaces bounds that hold for all postures within the stated errors by those along the directions
 // of this tick's evaluations.
-[[gnu::noinline]] void narrow(std::uint32_t pair, const TickView& view, SweptPrecision precision,
+[[gnu::noinline]] void narrow(std::uint32_t pair, const TickView& view,
                               PairBounds& bounds) noexcept {
   const PairTable& table = view.pairs;
   const TrackedObject& a = view.objects[table.entries[pair].object_a];
@@ -159,8 +159,10 @@ PairBounds bounds_of_one_part_pair(std::uint32_t pair, const TrackedObject& a,
     bounds.swept_upper = std::min(bounds.swept_upper, bounds.upper);
   }
   bounds.lower = std::max(bounds.lower, lower);
-  const double swept =
-      lower_between_ticks(a, b, before, lower, lower_by_evaluations(pair, view), precision);
+  // A direction that stays in the frame of a body turns in the world, and the errors along it
+  // change.
+  const double swept = lower_between_ticks(a, b, before, lower, lower_by_evaluations(pair, view),
+                                           SweptPrecision::kByDisplacement);
   bounds.swept_lower = std::max(bounds.swept_lower, rounded_down(swept - drift));
   bounds.swept_lower = std::min(bounds.swept_lower, bounds.lower);
 }
@@ -243,7 +245,7 @@ PairBounds bounds_of(std::uint32_t pair, const TickView& view, SweptPrecision pr
   if (view.errors == nullptr) [[likely]]
     return bounds_by_table(pair, view, precision);
   PairBounds bounds = bounds_by_table(pair, view, precision);
-  narrow(pair, view, precision, bounds);
+  narrow(pair, view, bounds);
   return bounds;
 }
 

@@ -113,9 +113,10 @@ std::span<DepthCloud> OwnImage::unseen(const Sensor& sensor) noexcept {
 void OwnImage::find_unseen(const Sensor& sensor, const PastPose& place,
                            const PostureHistory& postures, SeenCloud& cloud, SlabBody& body) {
   if (unseen(sensor).empty()) return;
-  const double place_error = place.error(sensor.extent());
   for (std::size_t i = 0; i < bodies_.size(); ++i) {
     if (bodies_[i].robot == kNone) continue;
+    const double place_error =
+        place.error(sensor.extent()) + errors_.largest(bodies_[i].object, sensor.object);
     const PastPose past = place_of(bodies_[i], postures);
     if (past.known) {
       find_unseen(bodies_[i], past, place, place_error, body, *of_sensor(sensor),

@@ -54,6 +54,10 @@ const Object& object(const Scene& scene, const std::string& name) {
   return scene.objects.front();
 }
 
+std::uint32_t number_of(const Scene& scene, const std::string& name) {
+  return static_cast<std::uint32_t>(&object(scene, name) - scene.objects.data());
+}
+
 TEST(StatedErrorKeys, AreDefaultsByKindAndExceptionsByName) {
   const Scene scene = uncertain_scene(
       "errors:\n  joints: {position: 0.1, slide: 0.2, translation: 0.3, rotation: 0.4}\n"
@@ -97,8 +101,32 @@ TEST(StatedErrorKeys, OneLineNamesTheKindsThatAreLeftAtZero) {
   EXPECT_THAT(left, testing::Not(HasSubstr("mounts"))) << "there is no sensor";
 }
 
-std::uint32_t number_of(const Scene& scene, const std::string& name) {
-  return static_cast<std::uint32_t>(&object(scene, name) - scene.objects.data());
+// A finger that mimics another joint by a factor, and slides.
+TEST(StatedErrorKeys, OfAMimicAreThoseOfItsMasterTimesTheFactor) {
+  const test::ScratchFolder folder;
+  test::write_text(
+      folder / "scara.urdf",
+      "<robot name=\"m\"><link name=\"a\"/><link name=\"b\"><collision><geometry><sphere "
+      "radius=\"0.1\"/></geometry></collision></link><link name=\"c\"><collision><geometry><sphere "
+      "radius=\"0.1\"/></geometry></collision></link><joint name=\"m\" type=\"revolute\"><parent "
+      "link=\"a\"/><child link=\"b\"/><limit lower=\"-1\" upper=\"1\" velocity=\"1\"/></joint>"
+      "<joint name=\"f\" type=\"prismatic\"><parent link=\"a\"/><child link=\"c\"/><limit "
+      "lower=\"-1\" upper=\"1\" velocity=\"1\"/><mimic joint=\"m\" multiplier=\"0.1\"/></joint>"
+      "</robot>");
+  const auto text = [](const std::string& errors) {
+    return "name: t\nunits: {length: m, angle: rad}\nrobots: [{name: m, urdf: scara.urdf}]\n"
+           "objects: [{name: wall, fixed: true, half_space: {normal: [0, 0, 1], offset: -1}}]\n"
+           "pairs: [{between: [m, wall]}]\n" +
+           errors;
+  };
+  const Scene scene =
+      scene_of(text("errors: {joints: {position: 0.001}, except: [{joint: m, position: 0.05}]}\n"),
+               folder / "cell.yaml");
+  const StatedErrors errors(scene);
+  EXPECT_NEAR(errors.largest(number_of(scene, "c"), number_of(scene, "wall")), 0.005, 1e-9);
+  EXPECT_THAT(
+      errors_of(text("errors: {except: [{joint: f, slide: 0.01}]}\n"), folder / "cell.yaml"),
+      HasSubstr("expected it of 'm'"));
 }
 
 TEST(StatedErrors, WhatCarriesBothBodiesDoesNotCount) {

@@ -273,6 +273,38 @@ TEST(ModelErrors, OfTwoArmsAreAtMostAFewPercentAboveTheWorstMachine) {
   EXPECT_LT(ratios[ratios.size() * 99 / 100], 1.15);
 }
 
+// Two bodies that turn together about one place: the direction between them turns, too.
+TEST(ModelErrors, BodiesThatTurnTogetherAreNeverNearerThanTheSweptBound) {
+  const ScratchFolder folder;
+  write_text(folder / "wrist.urdf",
+             "<robot name=\"wrist\"><link name=\"foot\"/><link name=\"tool\"><collision><geometry>"
+             "<sphere radius=\"0.2\"/></geometry></collision></link><joint name=\"turn\" "
+             "type=\"continuous\"><origin xyz=\"10 0 0\"/><parent link=\"foot\"/><child "
+             "link=\"tool\"/><axis xyz=\"0 0 1\"/><limit velocity=\"60\"/></joint></robot>");
+  const double e = 1e-3, length = 10.0, radius = 0.2, step = 0.05;
+  const Scene scene = scene_of(
+      "name: wrist\nunits: {length: m, angle: rad}\nrobots: [{name: arm, urdf: wrist.urdf}]\n"
+      "objects: [{name: cart, may_jump: true, sphere: {radius: 0.2, centre: [0.41, 0, 0]}}]\n"
+      "pairs: [{between: [arm, cart], publish: true}]\nerrors: {bases: {rotation: 0.001}}\n",
+      folder / "cell.yaml");
+  Monitor monitor(scene);
+  const auto cart = static_cast<std::uint32_t>(scene.objects[0].name == "cart" ? 0 : 1);
+  std::int64_t now = kStart;
+  const Report* report = nullptr;
+  for (int tick = 6; tick >= 0; --tick) {
+    now += kTick;
+    const double angle = step * tick;
+    const Pose pose{.position = Vec3(length, 0, 0),
+                    .orientation = Eigen::Quaterniond(Eigen::AngleAxisd(angle, Vec3::UnitZ()))};
+    report = &monitor.tick(std::vector{test::sample(cart, pose, now)},
+                           std::vector{joint(0, angle, now)}, now);
+  }
+  // At the start of the tick, the base is turned so that the tool comes towards the cart.
+  const Vec3 tool(length * std::cos(e), length * std::sin(e), 0.0);
+  const Vec3 at(length + 0.41 * std::cos(step), 0.41 * std::sin(step), 0.0);
+  EXPECT_LE(report->pairs[0].swept_lower, (at - tool).norm() - 2.0 * radius + 1e-12);
+}
+
 TEST(ModelErrors, WithoutAnyTheReportIsTheSame) {
   const Scene with = workshop_scene("errors: {joints: {position: 0}}\n"),
               without = workshop_scene("");

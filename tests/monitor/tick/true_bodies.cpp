@@ -31,9 +31,12 @@ Pose displaced(const DrawnErrors::Place& by) {
   return pose;
 }
 
-Pose moved_by(const RobotJoint& joint, std::span<const double> positions, double error) {
-  const double at = joint.multiplier * positions[joint.variable] + joint.offset +
-                    std::abs(joint.multiplier) * error;
+// `errors`: of the variables.
+Pose moved_by(const RobotJoint& joint, std::span<const double> positions,
+              std::span<const double> errors) {
+  if (variables_of(joint.type) != 1) return {};
+  const double true_position = positions[joint.variable] + errors[joint.variable];
+  const double at = joint.multiplier * true_position + joint.offset;
   switch (joint.type) {
     case JointType::kRevolute:
     case JointType::kContinuous:
@@ -57,8 +60,8 @@ DrawnErrors drawn_errors(const Scene& scene, Random& random) {
     auto& positions = errors.positions.emplace_back();
     for (const RobotJoint& joint : robot.joints) {
       frames.push_back(drawn(joint.error.frame, random));
-      positions.push_back(drawn(
-          joint.type == JointType::kPrismatic ? joint.error.slide : joint.error.position, random));
+      const bool slides = joint.type == JointType::kPrismatic;
+      positions.push_back(drawn(slides ? joint.error.slide : joint.error.position, random));
     }
   }
   return errors;
@@ -77,6 +80,16 @@ std::vector<Pose> true_poses(const Scene& scene, std::span<const double> positio
                      compose(inverse(nominal_links[on.robot][on.link]), place));
     return place;
   };
+  // One error for each variable: that of the joint that has its name, if others mimic it.
+  const std::vector<double> exact(positions.size(), 0.0);
+  std::vector<double> off = exact;
+  for (std::size_t r = 0; r < scene.robots.size(); ++r) {
+    for (std::size_t j = 0; j < scene.robots[r].joints.size(); ++j) {
+      const RobotJoint& joint = scene.robots[r].joints[j];
+      if (variables_of(joint.type) == 1 && scene.variables[joint.variable].name == joint.name)
+        off[joint.variable] = errors.positions[r][j];
+    }
+  }
   const auto place_object = [&](std::uint32_t i) {
     const Object& object = scene.objects[i];
     nominal[i] = object.fixed ? object.world_from_object : sent[i];
@@ -102,11 +115,11 @@ std::vector<Pose> true_poses(const Scene& scene, std::span<const double> positio
     for (std::size_t j = 0; j < robot.joints.size(); ++j) {
       const RobotJoint& joint = robot.joints[j];
       const Pose frame = compose(links[r][joint.parent], joint.parent_from_joint);
-      links[r].push_back(compose(compose(frame, displaced(errors.frames[r][j])),
-                                 moved_by(joint, positions, errors.positions[r][j])));
+      links[r].push_back(
+          compose(compose(frame, displaced(errors.frames[r][j])), moved_by(joint, positions, off)));
       nominal_links[r].push_back(
           compose(compose(nominal_links[r][joint.parent], joint.parent_from_joint),
-                  moved_by(joint, positions, 0.0)));
+                  moved_by(joint, positions, exact)));
     }
     for (std::size_t link = 0; link < robot.links.size(); ++link) {
       if (robot.links[link].object != RobotLink::kNoObject)
