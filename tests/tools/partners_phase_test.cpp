@@ -62,8 +62,8 @@ TEST_F(Partners, WriteTheirReportsOfOneTickTogether) {
       },
       static_cast<int>(seconds) + 1);
   std::vector<double>& apart_us = times.apart_us;
-  // Most reports that were merged have two writers.
-  ASSERT_GT(apart_us.size(), (came - before) / 2) << logs();
+  // Most reports that were merged have two writers if the machine keeps the rate.
+  ASSERT_GT(apart_us.size(), ran_over() ? 0 : (came - before) / 2) << logs();
   std::ranges::sort(apart_us);
   const auto at = [&apart_us](double share) {
     return apart_us[static_cast<std::size_t>(share * static_cast<double>(apart_us.size() - 1))];
