@@ -224,6 +224,8 @@ void Witness::meet(const Placed& placed, const PinholeCamera& camera) noexcept {
       const Span grown = inside(shape, origin, along, placed.error);
       if (!grown.any()) continue;
       met.nearest = std::min(met.nearest, static_cast<float>(grown.from));
+      // A part that may begin only behind the sure one adds nothing.
+      if (!(grown.from < met.surest)) continue;
       const Span stated = exact ? inside(shape, origin, along, 0.0) : Span{.from = grown.from};
       if (stated.any() && stated.from < met.stated) {
         met.stated = static_cast<float>(stated.from);
