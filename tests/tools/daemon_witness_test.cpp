@@ -25,8 +25,9 @@ class DaemonWitness : public DaemonCameras {
       for (std::uint32_t v = 0; v < image.height; ++v) {
         for (std::uint32_t u = 0; u < image.width; ++u) {
           const Vec3 on_arm = 1.95 * camera.made.ray(u, v);
+          // The end face of the lower link, too: what is nearer than it proves nothing.
           const bool on_upper = std::abs(on_arm.x()) < 0.4,
-                     on_lower = std::abs(on_arm.x() - 1) < 0.4;
+                     on_lower = std::abs(on_arm.x() - 1) < 0.42;
           if (std::abs(on_arm.y()) < 0.05 && (on_upper || on_lower))
             depth[v * image.width + u] = static_cast<float>(1.95 + farther);
         }
