@@ -11,7 +11,7 @@ constexpr std::int64_t kTakeoverFrom = 1050 * kMs;  // after the owner fell sile
 constexpr double kOutOfReach = 8.0;                 // m, of a takeover
 
 std::int64_t age_limit(Channel channel) {
-  if (channel == Channel::kEye) return kEyeAgeLimit;
+  if (channel == Channel::kEye || channel == Channel::kPoints) return kEyeAgeLimit;
   return channel == Channel::kOdom || channel == Channel::kBase ? kBaseAgeLimit : kAgeLimit;
 }
 
@@ -60,6 +60,9 @@ double size_of(const Fault& fault, Random& random) {
       if (is_robot(fault.channel)) return random.sign() * random.uniform(1.5, 2.0);
       return random.uniform(3.0, 7.0);
     case Lie::kWrongStamps:
+      // How old the points are that come with fresh stamps.
+      if (fault.channel == Channel::kPoints)
+        return static_cast<double>(kMs) * random.integer(5, 99);
       return static_cast<double>(kMs) *
              (fault.flag ? random.uniform(1.0, 4.0) : -random.uniform(5.0, 200.0));
     case Lie::kRivalLater:
@@ -92,6 +95,14 @@ void drift(const Fault& fault, std::int64_t t, Told& told) {
   told.joint_offset[fault.joint] = lengths * kJointSpeed[fault.joint] * (fault.flag ? 1 : -1);
 }
 
+bool strikes_points(Lie lie) {
+  constexpr std::array kAll{Lie::kFreezeAtRest, Lie::kWrongStamps, Lie::kSilence,
+                            Lie::kReordered,    Lie::kDuplicated,  Lie::kRivalLater,
+                            Lie::kParentFar,    Lie::kNotANumber,  Lie::kScaled,
+                            Lie::kTorn,         Lie::kLayout};
+  return std::ranges::count(kAll, lie) != 0;
+}
+
 }  // namespace
 
 const char* name(Lie lie) {
@@ -100,7 +111,7 @@ const char* name(Lie lie) {
       "ZeroVelocities", "WrongSign",    "WrongUnit",  "WrongStamps", "Silence",
       "Reordered",      "Duplicated",   "RivalLater", "RivalFirst",  "RivalWhileRefused",
       "Takeover",       "OutOfLimits",  "Wrapped",    "ParentFar",   "WrongQuaternion",
-      "NotANumber",     "Scaled"};
+      "NotANumber",     "Scaled",       "Torn",       "Layout"};
   return kNames[static_cast<std::size_t>(lie)];
 }
 
@@ -112,6 +123,7 @@ std::string described(const Fault& fault) {
 }
 
 bool strikes(Lie lie, Channel channel) {
+  if (channel == Channel::kPoints) return strikes_points(lie);
   switch (lie) {
     case Lie::kFreezeInMotion:
     case Lie::kHalfSpeed:
@@ -127,6 +139,9 @@ bool strikes(Lie lie, Channel channel) {
       return is_robot(channel);
     case Lie::kParentFar:
       return is_frame(channel);
+    case Lie::kTorn:
+    case Lie::kLayout:
+      return false;
     case Lie::kWrongQuaternion:
       return !is_robot(channel);
     default:
@@ -148,6 +163,8 @@ Fault drawn(Lie lie, Channel channel, Random& random) {
     fault.from = 0;
     fault.to = static_cast<std::int64_t>(random.uniform(1800.0, 2500.0)) * kMs;
   }
+  // The picture that is repeated is the first one of the fault, and true.
+  if (channel == Channel::kPoints) fault.from -= fault.from % kPicturePeriod;
   return fault;
 }
 
@@ -182,8 +199,12 @@ Admissible admissible(const Fault& fault) {
     // Positions are compared with one that is up to six age limits old, with one in hand.
     case Lie::kDrift:
       return {7 * age_limit(fault.channel), 1.0};
-    // Stamps ahead by less than the cell's limit for the future claim an age of zero.
+    // Points of a time before the stamp: the camera has moved meanwhile, less than its age limit
+    // allows.
     case Lie::kWrongStamps:
+      if (fault.channel == Channel::kPoints)
+        return {0, fault.size / static_cast<double>(kEyeAgeLimit)};
+      // Stamps ahead by less than the cell's limit for the future claim an age of zero.
       return {0, fault.size > 0.0 ? 1.0 : 0.0};
     // Where an angle passes through zero, it is right in any unit.
     case Lie::kScaled:
@@ -238,7 +259,11 @@ Told told(const Fault& fault, std::int64_t t) {
                                                               : 57.29577951308232;
       break;
     case Lie::kWrongStamps:
-      told.stamp_offset = static_cast<std::int64_t>(fault.size);
+      if (fault.channel == Channel::kPoints) {
+        told.value_at -= static_cast<std::int64_t>(fault.size);
+      } else {
+        told.stamp_offset = static_cast<std::int64_t>(fault.size);
+      }
       break;
     case Lie::kSilence:
     case Lie::kTakeover:
@@ -269,6 +294,12 @@ Told told(const Fault& fault, std::int64_t t) {
     case Lie::kScaled:
       told.length_scale = 1000.0;
       told.angle_scale = 57.29577951308232;
+      break;
+    case Lie::kTorn:
+      told.is_torn = true;
+      break;
+    case Lie::kLayout:
+      (fault.flag ? told.is_padded : told.has_other_layout) = true;
       break;
     case Lie::kRivalLater:
     case Lie::kRivalFirst:

@@ -74,7 +74,7 @@ std::string cell_text_of_lies() {
 
 const char* name(Channel channel) {
   constexpr std::array kNames{"ball0", "ball1", "ball2",    "arm", "post",
-                              "odom",  "base",  "follower", "eye"};
+                              "odom",  "base",  "follower", "eye", "points"};
   return kNames[static_cast<std::size_t>(channel)];
 }
 

@@ -36,7 +36,7 @@ std::string name_of(const testing::TestParamInfo<Lie>& tested) { return name(tes
 INSTANTIATE_TEST_SUITE_P(Kinds, LyingInputs, testing::ValuesIn(all_kinds()), name_of);
 
 // The channels that the kind strikes: all in the long campaign, else a ball, a robot, a frame of
-// what follows tf, and that of the camera.
+// what follows tf, and the frame and the points of the camera.
 std::vector<Channel> struck_by(Lie lie) {
   const bool is_long = seeds_of(1) > 1;
   std::vector<Channel> struck;
@@ -44,7 +44,7 @@ std::vector<Channel> struck_by(Lie lie) {
     const auto channel = static_cast<Channel>(i);
     const bool is_chosen =
         is_long || channel == Channel::kBall0 || channel == Channel::kArm ||
-        channel == Channel::kEye ||
+        channel == Channel::kEye || channel == Channel::kPoints ||
         channel == (static_cast<std::size_t>(lie) % 2 == 0 ? Channel::kBase : Channel::kOdom);
     if (is_chosen && strikes(lie, channel)) struck.push_back(channel);
   }

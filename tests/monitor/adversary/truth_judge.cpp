@@ -19,8 +19,8 @@ constexpr double kBend = 2.5e-4;  // m
 constexpr double kSpeedError = 8.0 * 0.02 + 0.02;  // m/s
 // The path length of the farthest point of a robot when a joint rotates by a radian, m.
 constexpr double kLever = 2.1;
-// The camera is nearer to the point that it sees, m. Bounds are those of the ball by which it knows
-// the point, whose radius is the stated error of the depth.
+// The camera is nearer to the points that it sees, m. Bounds are those of the balls by which it
+// knows them, whose radius is the stated error of the depth.
 constexpr double kSight = 2.0;
 constexpr double kSeenRadius = 0.002 * 1.001;
 
@@ -32,7 +32,7 @@ bool is_link_of(Channel robot, std::size_t body) {
 bool rests_on(std::size_t body, Channel channel) {
   if (is_ball(channel)) return body == static_cast<std::size_t>(channel);
   if (channel == Channel::kFollower) return body == kFollowerBody;
-  if (channel == Channel::kEye) return body == kEyeBody;
+  if (channel == Channel::kEye || channel == Channel::kPoints) return body == kEyeBody;
   if (channel == Channel::kBase) return is_link_of(Channel::kArm, body);
   if (channel == Channel::kOdom) return body == kFollowerBody || is_link_of(Channel::kArm, body);
   return is_link_of(channel, body) && body != kArmBody && body != kPostBody;
@@ -43,7 +43,7 @@ double slack_of(Channel channel) {
   if (is_robot(channel)) return kLever * kJointSpeed[0] * 1e-9 * static_cast<double>(kAgeLimit);
   if (channel == Channel::kOdom || channel == Channel::kBase)
     return kBaseSpeed * 1e-9 * static_cast<double>(kBaseAgeLimit);
-  if (channel == Channel::kEye)
+  if (channel == Channel::kEye || channel == Channel::kPoints)
     return (1.0 + kSight) * kEyeSpeed * 1e-9 * static_cast<double>(kEyeAgeLimit);
   return kBallSpeed * 1e-9 * static_cast<double>(kAgeLimit);
 }
@@ -56,7 +56,7 @@ std::int64_t age_limit_of(std::size_t body) {
 
 const char* name(Claim claim) {
   constexpr std::array<const char*, kClaims> kNames{"lower", "upper",      "swept lower", "minimum",
-                                                    "zone",  "separation", "speed"};
+                                                    "zone",  "separation", "speed",       "answer"};
   return kNames[static_cast<std::size_t>(claim)];
 }
 
@@ -72,6 +72,7 @@ std::string Verdict::text() const {
         fmt::format("  {}: false {} times, by {:.4f} at worst; first: {}\n",
                     name(static_cast<Claim>(i)), claims[i].times, claims[i].worst, claims[i].first);
   }
+  text += fmt::format("  questions: {} asked, {} answered, {} free\n", asked, answered, free);
   return text + fmt::format("  certified in {:.2f} % of pairs and ticks, {} in {:.2f} %\n",
                             100.0 * certified, least_pair, 100.0 * least_certified);
 }
@@ -146,7 +147,13 @@ bool TruthJudge::is_excused(std::uint32_t pair) const {
 
 long double TruthJudge::distance(std::uint32_t pair, const Centres& centres) const {
   const std::size_t a = body_[scene_.pairs[pair].first], b = body_[scene_.pairs[pair].second];
-  return (centres[a] - centres[b]).norm() - TrueMotion::radius(a) - TrueMotion::radius(b);
+  const double radii = TrueMotion::radius(a) + TrueMotion::radius(b);
+  if (a != kEyeBody && b != kEyeBody) return (centres[a] - centres[b]).norm() - radii;
+  const TruePoint& other = centres[a == kEyeBody ? b : a];
+  long double least = std::numeric_limits<long double>::infinity();
+  for (const TruePoint& seen : TrueMotion::seen_points())
+    least = std::min(least, (other - seen).norm() - radii);
+  return least;
 }
 
 long double TruthJudge::least_since(std::uint32_t pair) const {
@@ -242,6 +249,34 @@ void TruthJudge::judge_separation(const PairSeparation& pair) {
                fmt::format("{}: measured {:.3f} and {:.3f} m/s, true {:.3f} and {:.3f}",
                            pair_name(scene_, pair.pair), pair.human_speed, pair.robot_speed,
                            human_speed, robot_speed));
+  }
+}
+
+// The robot moves as its own joints do, which the question states. So its pairs are as near as they
+// get, at each millisecond, to within kBend. All ages are part of the answer.
+void TruthJudge::judge(const Answer* answer, Channel robot, const std::vector<double>& times) {
+  ++verdict_.asked;
+  if (answer == nullptr) return;
+  ++verdict_.answered;
+  if (std::ranges::any_of(allowed_, &Allowed::is_excused)) return;
+  const bool is_free = answer->margins.front().verdict == Verdict::kFree;
+  verdict_.free += is_free ? 1 : 0;
+  const std::int64_t last = t_ + std::llround(1e9 * times.back());
+  for (std::int64_t t = t_; t <= last; t += kMs) {
+    const Centres centres = truth_.centres(t);
+    for (std::uint32_t pair = 0; pair < scene_.pairs.size(); ++pair) {
+      const std::size_t a = body_[scene_.pairs[pair].first], b = body_[scene_.pairs[pair].second];
+      if (!is_link_of(robot, a) && !is_link_of(robot, b)) continue;
+      const double error = allowed(pair, 0, 0) + kBend;
+      const auto truth = static_cast<double>(distance(pair, centres));
+      const double claimed =
+          is_free ? std::max(answer->lower, answer->margins.front().margin) : answer->lower;
+      if (claimed <= std::max(truth, 0.0) + error) continue;
+      note_false(Claim::kAnswer, claimed - truth - error,
+                 fmt::format("{} {}: at least {:.4f}, {} is at {:.4f} after {} ms", name(robot),
+                             is_free ? "is free" : "moves", claimed, pair_name(scene_, pair), truth,
+                             (t - t_) / kMs));
+    }
   }
 }
 

@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "monitor/interface/question.hpp"
 #include "monitor/interface/report.hpp"
 #include "tests/monitor/adversary/lies.hpp"
 #include "tests/monitor/adversary/true_motion.hpp"
@@ -25,6 +26,7 @@ enum class Claim : std::uint8_t {
   kZone,        // a zone is not active
   kSeparation,  // the clearance of a separation
   kSpeed,       // a speed that is said to be measured
+  kAnswer,      // the lower bound of a question's answer, or its 'free'
   kCount
 };
 inline constexpr auto kClaims = static_cast<std::size_t>(Claim::kCount);
@@ -41,6 +43,7 @@ struct Verdict {
   // again: of all pairs, and of the worst one.
   double certified = 1.0, least_certified = 1.0;
   std::string least_pair;
+  std::uint64_t asked = 0, answered = 0, free = 0;  // questions
 
   [[nodiscard]] bool is_true() const;
   [[nodiscard]] std::string text() const;
@@ -60,6 +63,9 @@ class TruthJudge {
 
   // `t` is the time of the tick, ns since the start.
   void judge(const Report& report, std::int64_t t);
+  // Judges the answer about a motion of the robot that begins at the last tick. `answer` is null if
+  // there is none. While an input may lie unnoticed, nothing is judged.
+  void judge(const Answer* answer, Channel robot, const std::vector<double>& times);
   [[nodiscard]] Verdict verdict() const;
 
  private:
