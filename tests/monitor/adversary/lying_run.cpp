@@ -99,7 +99,9 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
   // within a micrometre.
   void ask() {
     const Channel robot = random_.chance(0.5) ? Channel::kArm : Channel::kPost;
-    Question question{.margins = {random_.uniform(0.0, 0.3)}, .tolerance = 0.02};
+    Question question;
+    question.margins = {random_.uniform(0.0, 0.3)};
+    question.tolerance = 0.02;
     question.motion = true_motion(robot);
     present_.cycle = monitor_->cycle();
     present_.now_ns = kStartOfLies + now_;
