@@ -259,7 +259,7 @@ void TruthJudge::judge(const Answer* answer, Channel robot, const std::vector<do
   if (answer == nullptr) return;
   ++verdict_.answered;
   if (std::ranges::any_of(allowed_, &Allowed::is_excused)) return;
-  const bool is_free = answer->margins.front().verdict == Verdict::kFree;
+  const bool is_free = answer->margins.front().verdict == clearance::Verdict::kFree;
   verdict_.free += is_free ? 1 : 0;
   const std::int64_t last = t_ + std::llround(1e9 * times.back());
   for (std::int64_t t = t_; t <= last; t += kMs) {
