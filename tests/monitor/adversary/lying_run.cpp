@@ -94,15 +94,13 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
           frame_ = frame;
         });
   }
-  // Asks between two ticks whether a robot may move as it is going to, while all others move as the
-  // monitor knows them. The waypoints are so dense that cubic polynomials are the true motion to
-  // within a micrometre.
+  // Asks between two ticks whether the robots may move as they are going to, while all others move
+  // as the monitor knows them.
   void ask() {
-    const Channel robot = random_.chance(0.5) ? Channel::kArm : Channel::kPost;
     Question question;
     question.margins = {random_.uniform(0.0, 0.3)};
     question.tolerance = 0.02;
-    question.motion = true_motion(robot);
+    question.motion = true_motion();
     present_.cycle = monitor_->cycle();
     present_.now_ns = kStartOfLies + now_;
     read_inputs(*monitor_, present_);
@@ -116,21 +114,42 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
     Answer answer;
     const bool is_answered =
         !complete(scene_, present_, std::move(frames), question) && !asker_.ask(question, answer);
-    judge_.judge(is_answered ? &answer : nullptr, robot, question.motion.times);
+    judge_.judge(is_answered ? &answer : nullptr, question.motion.times);
   }
-  [[nodiscard]] JointTrajectory true_motion(Channel robot) {
+  // Of all joints and of the base. The waypoints are so dense that cubic polynomials are the true
+  // motion to within a micrometre.
+  [[nodiscard]] JointTrajectory true_motion() {
     JointTrajectory motion;
-    for (const char* const joint : kJointNames)
-      motion.joints.push_back(std::string(name(robot)) + "_" + joint);
+    for (const Channel robot : {Channel::kArm, Channel::kPost}) {
+      for (const char* const joint : kJointNames)
+        motion.joints.push_back(std::string(name(robot)) + "_" + joint);
+    }
+    for (const char* const part :
+         {"trans_x", "trans_y", "trans_z", "rot_x", "rot_y", "rot_z", "rot_w"})
+      motion.joints.push_back(std::string("arm_arm_base/") + part);
     const int waypoints = random_.integer(2, 8);
     for (int i = 0; i < waypoints; ++i) {
-      motion.times.push_back(1e-9 * static_cast<double>(i * kWaypoints));
-      for (const TrueJoint& joint : truth_.joints(robot, now_ + i * kWaypoints)) {
-        motion.positions.push_back(static_cast<double>(joint.position));
-        motion.velocities.push_back(static_cast<double>(joint.velocity));
+      const std::int64_t t = now_ + i * kWaypoints;
+      motion.times.push_back(1e-9 * static_cast<double>(t - now_));
+      for (const Channel robot : {Channel::kArm, Channel::kPost}) {
+        for (const TrueJoint& joint : truth_.joints(robot, t)) {
+          motion.positions.push_back(static_cast<double>(joint.position));
+          motion.velocities.push_back(static_cast<double>(joint.velocity));
+        }
+      }
+      const auto base = base_at(t), before = base_at(t - kMs), after = base_at(t + kMs);
+      for (std::size_t k = 0; k < base.size(); ++k) {
+        motion.positions.push_back(base[k]);
+        motion.velocities.push_back((after[k] - before[k]) * 1e9 / (2.0 * kMs));
       }
     }
     return motion;
+  }
+  // The variables of the arm's base. It turns by less than a half turn, so the quaternion does not
+  // change its sign.
+  [[nodiscard]] std::array<double, 7> base_at(std::int64_t t) const {
+    const auto& [p, q] = as_pose(truth_.pose(Channel::kOdom, t) * truth_.pose(Channel::kBase, t));
+    return {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()};
   }
 
   std::int64_t now_ = -kMs;  // ns since the start

@@ -252,29 +252,37 @@ void TruthJudge::judge_separation(const PairSeparation& pair) {
   }
 }
 
-// The robot moves as its own joints do, which the question states. So its pairs are as near as they
-// get, at each millisecond, to within kBend. All ages are part of the answer.
-void TruthJudge::judge(const Answer* answer, Channel robot, const std::vector<double>& times) {
+// The question states where the robots are, so faults of theirs excuse nothing; the ages of all
+// other inputs are part of the answer. Between two milliseconds no pair is nearer by kBend.
+void TruthJudge::judge(const Answer* answer, const std::vector<double>& times) {
   ++verdict_.asked;
   if (answer == nullptr) return;
   ++verdict_.answered;
-  if (std::ranges::any_of(allowed_, &Allowed::is_excused)) return;
-  const bool is_free = answer->margins.front().verdict == clearance::Verdict::kFree;
+  const MarginAnswer& margin = answer->margins.front();
+  const bool is_free = margin.verdict == clearance::Verdict::kFree;
   verdict_.free += is_free ? 1 : 0;
+  const double claimed = is_free ? std::max(answer->lower, margin.margin) : answer->lower;
   const std::int64_t last = t_ + std::llround(1e9 * times.back());
   for (std::int64_t t = t_; t <= last; t += kMs) {
     const Centres centres = truth_.centres(t);
     for (std::uint32_t pair = 0; pair < scene_.pairs.size(); ++pair) {
-      const std::size_t a = body_[scene_.pairs[pair].first], b = body_[scene_.pairs[pair].second];
-      if (!is_link_of(robot, a) && !is_link_of(robot, b)) continue;
-      const double error = allowed(pair, 0, 0) + kBend;
+      const std::array bodies{body_[scene_.pairs[pair].first], body_[scene_.pairs[pair].second]};
+      double error = kRounding + kBend;
+      bool is_of_robot = false, is_excused = false;
+      for (const std::size_t body : bodies) {
+        const bool is_link = is_link_of(Channel::kArm, body) || is_link_of(Channel::kPost, body);
+        is_of_robot |= is_link;
+        if (is_link) continue;
+        is_excused |= allowed_[body].is_excused;
+        error += allowed_[body].error + (body == kEyeBody ? kSeenRadius : 0.0);
+      }
+      if (!is_of_robot || is_excused) continue;
       const auto truth = static_cast<double>(distance(pair, centres));
-      const double claimed =
-          is_free ? std::max(answer->lower, answer->margins.front().margin) : answer->lower;
-      if (claimed <= std::max(truth, 0.0) + error) continue;
-      note_false(Claim::kAnswer, claimed - truth - error,
-                 fmt::format("{} {}: at least {:.4f}, {} is at {:.4f} after {} ms", name(robot),
-                             is_free ? "is free" : "moves", claimed, pair_name(scene_, pair), truth,
+      const double by = claimed - std::max(truth, 0.0) - error;
+      if (by <= 0.0) continue;
+      note_false(Claim::kAnswer, by,
+                 fmt::format("{}: at least {:.4f}, {} is at {:.4f} after {} ms",
+                             is_free ? "free" : "not free", claimed, pair_name(scene_, pair), truth,
                              (t - t_) / kMs));
     }
   }

@@ -63,9 +63,9 @@ class TruthJudge {
 
   // `t` is the time of the tick, ns since the start.
   void judge(const Report& report, std::int64_t t);
-  // Judges the answer about a motion of the robot that begins at the last tick. `answer` is null if
-  // there is none. While an input may lie unnoticed, nothing is judged.
-  void judge(const Answer* answer, Channel robot, const std::vector<double>& times);
+  // Judges the answer about the true motion of both robots, which begins at the last tick. `answer`
+  // is null if there is none.
+  void judge(const Answer* answer, const std::vector<double>& times);
   [[nodiscard]] Verdict verdict() const;
 
  private:
