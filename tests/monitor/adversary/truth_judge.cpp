@@ -14,6 +14,8 @@ constexpr double kRounding = 1e-9;  // m
 // Between two ticks a body is taken to move straight from one pose to the next. The path bends: an
 // acceleration of 20 m/s2 over 10 ms departs by a quarter of a millimetre.
 constexpr double kBend = 2.5e-4;  // m
+// The motion that a question states departs from the true one by less, m.
+constexpr double kPathError = 1e-6;
 // A velocity from differences is that of half an interval ago, or of a stamp an age limit ago. No
 // body accelerates by more than 8 m/s2.
 constexpr double kSpeedError = 8.0 * 0.02 + 0.02;  // m/s
@@ -253,7 +255,7 @@ void TruthJudge::judge_separation(const PairSeparation& pair) {
 }
 
 // The question states where the robots are, so faults of theirs excuse nothing; the ages of all
-// other inputs are part of the answer. Between two milliseconds no pair is nearer by kBend.
+// other inputs are part of the answer.
 void TruthJudge::judge(const Answer* answer, const std::vector<double>& times) {
   ++verdict_.asked;
   if (answer == nullptr) return;
@@ -267,7 +269,7 @@ void TruthJudge::judge(const Answer* answer, const std::vector<double>& times) {
     const Centres centres = truth_.centres(t);
     for (std::uint32_t pair = 0; pair < scene_.pairs.size(); ++pair) {
       const std::array bodies{body_[scene_.pairs[pair].first], body_[scene_.pairs[pair].second]};
-      double error = kRounding + kBend;
+      double error = kPathError;
       bool is_of_robot = false, is_excused = false;
       for (const std::size_t body : bodies) {
         const bool is_link = is_link_of(Channel::kArm, body) || is_link_of(Channel::kPost, body);
