@@ -103,6 +103,16 @@ bool strikes_points(Lie lie) {
   return std::ranges::count(kAll, lie) != 0;
 }
 
+// Makes the lies that only points tell, or tell in another way.
+bool is_told_of_points(const Fault& fault, Told& told) {
+  if (fault.channel != Channel::kPoints) return false;
+  if (fault.lie == Lie::kWrongStamps) told.value_at -= static_cast<std::int64_t>(fault.size);
+  told.is_torn = fault.lie == Lie::kTorn;
+  told.has_other_layout = fault.lie == Lie::kLayout && !fault.flag;
+  told.is_padded = fault.lie == Lie::kLayout && fault.flag;
+  return fault.lie == Lie::kWrongStamps || fault.lie == Lie::kTorn || fault.lie == Lie::kLayout;
+}
+
 }  // namespace
 
 const char* name(Lie lie) {
@@ -226,7 +236,7 @@ Told told(const Fault& fault, std::int64_t t) {
   constexpr std::array kOfVelocities{Lie::kFreezeInMotion, Lie::kHalfSpeed, Lie::kZeroVelocities,
                                      Lie::kWrongSign, Lie::kWrongUnit};
   if (std::ranges::count(kOfVelocities, fault.lie) != 0) told.velocities = true;
-  if (t < fault.from || t >= fault.to) return told;
+  if (t < fault.from || t >= fault.to || is_told_of_points(fault, told)) return told;
   switch (fault.lie) {
     case Lie::kFreezeInMotion:
       told.value_at = fault.from;
@@ -259,11 +269,7 @@ Told told(const Fault& fault, std::int64_t t) {
                                                               : 57.29577951308232;
       break;
     case Lie::kWrongStamps:
-      if (fault.channel == Channel::kPoints) {
-        told.value_at -= static_cast<std::int64_t>(fault.size);
-      } else {
-        told.stamp_offset = static_cast<std::int64_t>(fault.size);
-      }
+      told.stamp_offset = static_cast<std::int64_t>(fault.size);
       break;
     case Lie::kSilence:
     case Lie::kTakeover:
@@ -295,15 +301,7 @@ Told told(const Fault& fault, std::int64_t t) {
       told.length_scale = 1000.0;
       told.angle_scale = 57.29577951308232;
       break;
-    case Lie::kTorn:
-      told.is_torn = true;
-      break;
-    case Lie::kLayout:
-      (fault.flag ? told.is_padded : told.has_other_layout) = true;
-      break;
-    case Lie::kRivalLater:
-    case Lie::kRivalFirst:
-    case Lie::kCount:
+    default:
       break;
   }
   return told;

@@ -104,7 +104,7 @@ TEST(TrueInputs, AreCertifiedNearlyAlwaysAndQuestionsAreAnswered) {
       run.joints_went_far = far;
       SCOPED_TRACE(std::string(wraps ? "wrapped" : "not wrapped") + (far ? ", far" : ""));
       const Verdict verdict = expect_truth(cell, run);
-      EXPECT_GT(verdict.answered, verdict.asked / 2);
+      EXPECT_GT(verdict.answered, verdict.asked / 2) << verdict.text();
       EXPECT_GT(verdict.free, 0U);
     }
   }

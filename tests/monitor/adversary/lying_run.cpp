@@ -112,9 +112,9 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
                         .pose_error = frame_.pose_error});
     }
     Answer answer;
-    const bool is_answered =
-        !complete(scene_, present_, std::move(frames), question) && !asker_.ask(question, answer);
-    judge_.judge(is_answered ? &answer : nullptr, question.motion.times);
+    auto refusal = complete(scene_, present_, std::move(frames), question);
+    if (!refusal) refusal = asker_.ask(question, answer);
+    judge_.judge(answer, refusal, question.motion.times);
   }
   // Of all joints and of the base. The waypoints are so dense that cubic polynomials are the true
   // motion to within a micrometre.

@@ -74,7 +74,8 @@ std::string Verdict::text() const {
         fmt::format("  {}: false {} times, by {:.4f} at worst; first: {}\n",
                     name(static_cast<Claim>(i)), claims[i].times, claims[i].worst, claims[i].first);
   }
-  text += fmt::format("  questions: {} asked, {} answered, {} free\n", asked, answered, free);
+  text += fmt::format("  questions: {} asked, {} answered, {} free; {}\n", asked, answered, free,
+                      refusal);
   return text + fmt::format("  certified in {:.2f} % of pairs and ticks, {} in {:.2f} %\n",
                             100.0 * certified, least_pair, 100.0 * least_certified);
 }
@@ -256,14 +257,16 @@ void TruthJudge::judge_separation(const PairSeparation& pair) {
 
 // The question states where the robots are, so faults of theirs excuse nothing; the ages of all
 // other inputs are part of the answer.
-void TruthJudge::judge(const Answer* answer, const std::vector<double>& times) {
+void TruthJudge::judge(const Answer& answer, const std::optional<std::string>& refusal,
+                       const std::vector<double>& times) {
   ++verdict_.asked;
-  if (answer == nullptr) return;
+  if (refusal) verdict_.refusal = *refusal;
+  if (refusal) return;
   ++verdict_.answered;
-  const MarginAnswer& margin = answer->margins.front();
+  const MarginAnswer& margin = answer.margins.front();
   const bool is_free = margin.verdict == clearance::Verdict::kFree;
   verdict_.free += is_free ? 1 : 0;
-  const double claimed = is_free ? std::max(answer->lower, margin.margin) : answer->lower;
+  const double claimed = is_free ? std::max(answer.lower, margin.margin) : answer.lower;
   const std::int64_t last = t_ + std::llround(1e9 * times.back());
   for (std::int64_t t = t_; t <= last; t += kMs) {
     const Centres centres = truth_.centres(t);

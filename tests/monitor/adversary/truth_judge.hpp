@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -44,6 +45,7 @@ struct Verdict {
   double certified = 1.0, least_certified = 1.0;
   std::string least_pair;
   std::uint64_t asked = 0, answered = 0, free = 0;  // questions
+  std::string refusal;                              // of the last one that has no answer
 
   [[nodiscard]] bool is_true() const;
   [[nodiscard]] std::string text() const;
@@ -63,9 +65,10 @@ class TruthJudge {
 
   // `t` is the time of the tick, ns since the start.
   void judge(const Report& report, std::int64_t t);
-  // Judges the answer about the true motion of both robots, which begins at the last tick. `answer`
-  // is null if there is none.
-  void judge(const Answer* answer, const std::vector<double>& times);
+  // Judges the answer about the true motion of both robots, which begins at the last tick. If there
+  // is a refusal, there is no answer.
+  void judge(const Answer& answer, const std::optional<std::string>& refusal,
+             const std::vector<double>& times);
   [[nodiscard]] Verdict verdict() const;
 
  private:
