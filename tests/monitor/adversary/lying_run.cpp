@@ -95,7 +95,7 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
         });
   }
   // Asks between two ticks whether the robots may move as they are going to, while all others move
-  // as the monitor knows them.
+  // as the monitor knows them. A base on tf can only be held: the judge allows for its motion.
   void ask() {
     Question question;
     question.margins = {random_.uniform(0.0, 0.3)};
@@ -112,11 +112,17 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
                         .pose_error = frame_.pose_error});
     }
     Answer answer;
+    for (std::size_t i = 0; i < scene_.variables.size(); ++i) {
+      const PresentJoint& joint = present_.joints[i];
+      const std::string& variable = scene_.variables[i].name;
+      if (variable.find('/') != std::string::npos && joint.state == PresentPose::State::kUsable)
+        question.held.push_back({variable, joint.position});
+    }
     auto refusal = complete(scene_, present_, std::move(frames), question);
     if (!refusal) refusal = asker_.ask(question, answer);
     judge_.judge(answer, refusal, question.motion.times);
   }
-  // Of all joints and of the base. The waypoints are so dense that cubic polynomials are the true
+  // Of all joints. The waypoints are so dense that cubic polynomials are the true
   // motion to within a micrometre.
   [[nodiscard]] JointTrajectory true_motion() {
     JointTrajectory motion;
@@ -124,9 +130,6 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
       for (const char* const joint : kJointNames)
         motion.joints.push_back(std::string(name(robot)) + "_" + joint);
     }
-    for (const char* const part :
-         {"trans_x", "trans_y", "trans_z", "rot_x", "rot_y", "rot_z", "rot_w"})
-      motion.joints.push_back(std::string("arm_arm_base/") + part);
     const int waypoints = random_.integer(2, 8);
     for (int i = 0; i < waypoints; ++i) {
       const std::int64_t t = now_ + i * kWaypoints;
@@ -137,21 +140,9 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
           motion.velocities.push_back(static_cast<double>(joint.velocity));
         }
       }
-      const auto base = base_at(t), before = base_at(t - kMs), after = base_at(t + kMs);
-      for (std::size_t k = 0; k < base.size(); ++k) {
-        motion.positions.push_back(base[k]);
-        motion.velocities.push_back((after[k] - before[k]) * 1e9 / (2.0 * kMs));
-      }
     }
     return motion;
   }
-  // The variables of the arm's base. It turns by less than a half turn, so the quaternion does not
-  // change its sign.
-  [[nodiscard]] std::array<double, 7> base_at(std::int64_t t) const {
-    const auto& [p, q] = as_pose(truth_.pose(Channel::kOdom, t) * truth_.pose(Channel::kBase, t));
-    return {p.x(), p.y(), p.z(), q.x(), q.y(), q.z(), q.w()};
-  }
-
   std::int64_t now_ = -kMs;  // ns since the start
   TrueMotion truth_;
   std::deque<PoseBatch> batches_;

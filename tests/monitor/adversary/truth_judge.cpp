@@ -255,8 +255,8 @@ void TruthJudge::judge_separation(const PairSeparation& pair) {
   }
 }
 
-// The question states where the robots are, so faults of theirs excuse nothing; the ages of all
-// other inputs are part of the answer.
+// The question states where the joints are, so faults of theirs excuse nothing; the ages of all
+// other inputs are part of the answer. The arm's base is held where it was last heard, and moves.
 void TruthJudge::judge(const Answer& answer, const std::optional<std::string>& refusal,
                        const std::vector<double>& times) {
   ++verdict_.asked;
@@ -277,9 +277,12 @@ void TruthJudge::judge(const Answer& answer, const std::optional<std::string>& r
       for (const std::size_t body : bodies) {
         const bool is_link = is_link_of(Channel::kArm, body) || is_link_of(Channel::kPost, body);
         is_of_robot |= is_link;
-        if (is_link) continue;
-        is_excused |= allowed_[body].is_excused;
-        error += allowed_[body].error + (body == kEyeBody ? kSeenRadius : 0.0);
+        const bool is_of_arm = is_link && !is_link_of(Channel::kPost, body);
+        if (is_of_arm) error += kBaseSpeed * 1e-9 * static_cast<double>(t - t_ + kBaseAgeLimit);
+        if (is_link && !is_of_arm) continue;
+        const Allowed& of = allowed_[is_of_arm ? kArmBody : body];
+        is_excused |= of.is_excused;
+        error += of.error + (body == kEyeBody ? kSeenRadius : 0.0);
       }
       if (!is_of_robot || is_excused) continue;
       const auto truth = static_cast<double>(distance(pair, centres));
