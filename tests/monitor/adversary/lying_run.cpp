@@ -16,7 +16,7 @@ namespace clearance::test::lies {
 namespace {
 
 constexpr std::int64_t kStartOfLies = 1'700'000'000 * kSecond;  // CLOCK_REALTIME
-constexpr double kAsks = 0.01;                 // the share of ticks after which is asked
+constexpr double kAsks = 0.005;                // the share of ticks after which is asked
 constexpr std::int64_t kWaypoints = 40 * kMs;  // between two of them
 
 // The ports of the loop, and what makes the camera's frames. The time is that of its only clock.
@@ -100,6 +100,7 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
     Question question;
     question.margins = {random_.uniform(0.0, 0.3)};
     question.tolerance = 0.02;
+    question.work_limit = 1000;
     question.motion = true_motion();
     present_.cycle = monitor_->cycle();
     present_.now_ns = kStartOfLies + now_;
