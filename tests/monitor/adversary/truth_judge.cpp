@@ -120,7 +120,9 @@ void TruthJudge::find_allowed(std::int64_t t) {
     for (std::size_t body = 0; body < kBodies; ++body) {
       if (!rests_on(body, fault.channel)) continue;
       Allowed& of = allowed_[body];
-      if (t >= fault.from && t < fault.to + kSlackEnds)
+      // A late picture is in use for another second, since what it shows has a stated speed.
+      const std::int64_t ends = kSlackEnds + (body == kEyeBody ? kSecond : 0);
+      if (t >= fault.from && t < fault.to + ends)
         of.error += admitted.slack * slack_of(fault.channel);
       of.is_excused |= t >= fault.from && t < fault.from + admitted.delay;
       const std::int64_t delay = speed_delay(fault.channel);
