@@ -11,7 +11,7 @@ constexpr std::int64_t kTakeoverFrom = 1050 * kMs;  // after the owner fell sile
 constexpr double kOutOfReach = 8.0;                 // m, of a takeover
 
 std::int64_t age_limit(Channel channel) {
-  if (channel == Channel::kEye) return kEyeAgeLimit;
+  if (channel == Channel::kEye || channel == Channel::kPoints) return kEyeAgeLimit;
   return channel == Channel::kOdom || channel == Channel::kBase ? kBaseAgeLimit : kAgeLimit;
 }
 
@@ -60,6 +60,9 @@ double size_of(const Fault& fault, Random& random) {
       if (is_robot(fault.channel)) return random.sign() * random.uniform(1.5, 2.0);
       return random.uniform(3.0, 7.0);
     case Lie::kWrongStamps:
+      // How old the points are that come with fresh stamps.
+      if (fault.channel == Channel::kPoints)
+        return static_cast<double>(kMs) * random.integer(5, 99);
       return static_cast<double>(kMs) *
              (fault.flag ? random.uniform(1.0, 4.0) : -random.uniform(5.0, 200.0));
     case Lie::kRivalLater:
@@ -92,6 +95,24 @@ void drift(const Fault& fault, std::int64_t t, Told& told) {
   told.joint_offset[fault.joint] = lengths * kJointSpeed[fault.joint] * (fault.flag ? 1 : -1);
 }
 
+bool strikes_points(Lie lie) {
+  constexpr std::array kAll{Lie::kFreezeAtRest, Lie::kWrongStamps, Lie::kSilence,
+                            Lie::kReordered,    Lie::kDuplicated,  Lie::kRivalLater,
+                            Lie::kParentFar,    Lie::kNotANumber,  Lie::kScaled,
+                            Lie::kTorn,         Lie::kLayout};
+  return std::ranges::count(kAll, lie) != 0;
+}
+
+// Makes the lies that only points tell, or tell in another way.
+bool is_told_of_points(const Fault& fault, Told& told) {
+  if (fault.channel != Channel::kPoints) return false;
+  if (fault.lie == Lie::kWrongStamps) told.value_at -= static_cast<std::int64_t>(fault.size);
+  told.is_torn = fault.lie == Lie::kTorn;
+  told.has_other_layout = fault.lie == Lie::kLayout && !fault.flag;
+  told.is_padded = fault.lie == Lie::kLayout && fault.flag;
+  return fault.lie == Lie::kWrongStamps || fault.lie == Lie::kTorn || fault.lie == Lie::kLayout;
+}
+
 }  // namespace
 
 const char* name(Lie lie) {
@@ -100,7 +121,7 @@ const char* name(Lie lie) {
       "ZeroVelocities", "WrongSign",    "WrongUnit",  "WrongStamps", "Silence",
       "Reordered",      "Duplicated",   "RivalLater", "RivalFirst",  "RivalWhileRefused",
       "Takeover",       "OutOfLimits",  "Wrapped",    "ParentFar",   "WrongQuaternion",
-      "NotANumber",     "Scaled"};
+      "NotANumber",     "Scaled",       "Torn",       "Layout"};
   return kNames[static_cast<std::size_t>(lie)];
 }
 
@@ -112,6 +133,7 @@ std::string described(const Fault& fault) {
 }
 
 bool strikes(Lie lie, Channel channel) {
+  if (channel == Channel::kPoints) return strikes_points(lie);
   switch (lie) {
     case Lie::kFreezeInMotion:
     case Lie::kHalfSpeed:
@@ -127,6 +149,9 @@ bool strikes(Lie lie, Channel channel) {
       return is_robot(channel);
     case Lie::kParentFar:
       return is_frame(channel);
+    case Lie::kTorn:
+    case Lie::kLayout:
+      return false;
     case Lie::kWrongQuaternion:
       return !is_robot(channel);
     default:
@@ -148,6 +173,8 @@ Fault drawn(Lie lie, Channel channel, Random& random) {
     fault.from = 0;
     fault.to = static_cast<std::int64_t>(random.uniform(1800.0, 2500.0)) * kMs;
   }
+  // The picture that is repeated is the first one of the fault, and true.
+  if (channel == Channel::kPoints) fault.from -= fault.from % kPicturePeriod;
   return fault;
 }
 
@@ -182,8 +209,12 @@ Admissible admissible(const Fault& fault) {
     // Positions are compared with one that is up to six age limits old, with one in hand.
     case Lie::kDrift:
       return {7 * age_limit(fault.channel), 1.0};
-    // Stamps ahead by less than the cell's limit for the future claim an age of zero.
+    // Points of a time before the stamp: the camera has moved meanwhile, less than its age limit
+    // allows.
     case Lie::kWrongStamps:
+      if (fault.channel == Channel::kPoints)
+        return {0, fault.size / static_cast<double>(kEyeAgeLimit)};
+      // Stamps ahead by less than the cell's limit for the future claim an age of zero.
       return {0, fault.size > 0.0 ? 1.0 : 0.0};
     // Where an angle passes through zero, it is right in any unit.
     case Lie::kScaled:
@@ -205,7 +236,7 @@ Told told(const Fault& fault, std::int64_t t) {
   constexpr std::array kOfVelocities{Lie::kFreezeInMotion, Lie::kHalfSpeed, Lie::kZeroVelocities,
                                      Lie::kWrongSign, Lie::kWrongUnit};
   if (std::ranges::count(kOfVelocities, fault.lie) != 0) told.velocities = true;
-  if (t < fault.from || t >= fault.to) return told;
+  if (t < fault.from || t >= fault.to || is_told_of_points(fault, told)) return told;
   switch (fault.lie) {
     case Lie::kFreezeInMotion:
       told.value_at = fault.from;
@@ -270,9 +301,7 @@ Told told(const Fault& fault, std::int64_t t) {
       told.length_scale = 1000.0;
       told.angle_scale = 57.29577951308232;
       break;
-    case Lie::kRivalLater:
-    case Lie::kRivalFirst:
-    case Lie::kCount:
+    default:
       break;
   }
   return told;

@@ -11,6 +11,9 @@
 // - A source leaps, and stays there until the object can have got there.
 // - A value is wrong by less than the object moves within its age limit. The cell accepts that as
 //   an error of timing.
+// - The points of a camera are false and move as points may. A program that publishes them first,
+//   or takes them over from one that is silent, is believed.
+// - A cloud of one row loses points: only rows of a picture say how many there have to be.
 #pragma once
 
 #include <array>
@@ -44,10 +47,12 @@ enum class Lie : std::uint8_t {
   kTakeover,           // the owner is silent, and a rival says what cannot have been reached
   kOutOfLimits,        // a joint beyond its limits, from the start
   kWrapped,            // no lie: a continuous joint within plus or minus pi
-  kParentFar,          // a frame hangs on another parent, 50 m away
+  kParentFar,          // a frame hangs on another parent, or points are in that frame, 50 m away
   kWrongQuaternion,    // not of unit length, or half a turn away
   kNotANumber,         //
   kScaled,             // lengths in mm, angles in degrees
+  kTorn,               // all points but one are missing
+  kLayout,             // fields of points that share bytes, or rows that are half padding
   kCount
 };
 inline constexpr auto kLies = static_cast<std::size_t>(Lie::kCount);
@@ -100,6 +105,7 @@ struct Told {
   std::int64_t stamp_offset = 0;   // ns
   std::int64_t longest_delay = 0;  // ns
   bool is_repeated = false;
+  bool is_torn = false, has_other_layout = false, is_padded = false;  // points
 };
 [[nodiscard]] Told told(const Fault& fault, std::int64_t t);
 

@@ -48,7 +48,8 @@ std::string cell_text_of_lies() {
          "  - {name: rock, fixed: true, pose: {xyz: [1.0, 1.3, 0.3]}, sphere: {radius: 0.2}}\n"
          "sensors:\n"
          "  - {name: eye, points: /eye/points, most_points: 4, depth_along: ray, depth_error: "
-         "{constant: 0.002}, range: [0.1, 8], most_shell: 0.02, age_limit_ms: 100, mount: {frame: "
+         "{constant: 0.002}, range: [0.1, 8], most_shell: 0.02, age_limit_ms: 100, max_speed: "
+         "0.001, mount: {frame: "
          "eye_link, max_speed: 1, max_turn_speed: 1}}\n"
          "pairs:\n"
          "  - between: [arm, eye]\n  - between: [post, eye]\n  - between: [balls, eye]\n"
@@ -74,7 +75,7 @@ std::string cell_text_of_lies() {
 
 const char* name(Channel channel) {
   constexpr std::array kNames{"ball0", "ball1", "ball2",    "arm", "post",
-                              "odom",  "base",  "follower", "eye"};
+                              "odom",  "base",  "follower", "eye", "points"};
   return kNames[static_cast<std::size_t>(channel)];
 }
 

@@ -1,6 +1,6 @@
 // A cell for inputs that lie: balls by poses, a ball by tf, a robot whose base follows tf, a robot
-// that stands in the world, and a camera on tf that sees a point at rest. Every body is a ball, so
-// the true distance has a closed form.
+// that stands in the world, and a camera on tf that sees points at rest. Every body is a ball, or
+// points, so the true distance has a closed form.
 #pragma once
 
 #include <array>
@@ -24,14 +24,17 @@ enum class Channel : std::uint8_t {
   kOdom,
   kBase,
   kFollower,
-  kEye,
+  kEye,     // the frame of the camera
+  kPoints,  // what the camera sees
 };
-inline constexpr std::size_t kChannels = 9;
+inline constexpr std::size_t kChannels = 10;
 [[nodiscard]] constexpr bool is_ball(Channel c) { return c <= Channel::kBall2; }
 [[nodiscard]] constexpr bool is_robot(Channel c) {
   return c == Channel::kArm || c == Channel::kPost;
 }
-[[nodiscard]] constexpr bool is_frame(Channel c) { return c >= Channel::kOdom; }
+[[nodiscard]] constexpr bool is_frame(Channel c) {
+  return c >= Channel::kOdom && c <= Channel::kEye;
+}
 [[nodiscard]] const char* name(Channel channel);
 
 // Limits that the cell states.
@@ -39,9 +42,10 @@ inline constexpr double kBallSpeed = 2.0;            // m/s, also of the ball th
 inline constexpr double kBaseSpeed = 1.0;            // m/s, of the base and its parent frame
 inline constexpr std::int64_t kAgeLimit = 20 * kMs;  // of balls and joints
 inline constexpr std::int64_t kBaseAgeLimit = 40 * kMs;
-inline constexpr double kEyeSpeed = 1.0;  // of the camera, m/s and rad/s
-inline constexpr std::int64_t kEyeAgeLimit = 100 * kMs;
+inline constexpr double kEyeSpeed = 1.0;                 // of the camera, m/s and rad/s
+inline constexpr std::int64_t kEyeAgeLimit = 100 * kMs;  // of its frame, and of pictures
 inline constexpr std::int64_t kFrozenLimit = 100 * kMs;
+inline constexpr std::int64_t kPicturePeriod = 20 * kMs;  // of the camera
 // Joints in their order: shoulder, elbow (revolute), spin (continuous), push (prismatic).
 inline constexpr std::size_t kJoints = 4;
 inline constexpr std::array<const char*, kJoints> kJointNames{"shoulder", "elbow", "spin", "push"};
@@ -53,11 +57,13 @@ inline constexpr const char* kJointFrozenKey =
     "frozen_limit_ms";  // of a robot, with the value kFrozenLimit
 
 // A body, in the order of the true motion: balls 0 to 2, the follower, the rock, the links of the
-// arm from its foot to its tip, those of the post, and the point that the camera sees.
+// arm from its foot to its tip, those of the post, and the points that the camera sees.
 inline constexpr std::size_t kLinks = 5;
 inline constexpr std::size_t kFollowerBody = 3, kRockBody = 4, kArmBody = 5,
                              kPostBody = kArmBody + kLinks, kEyeBody = kPostBody + kLinks,
                              kBodies = kEyeBody + 1;
+// In two rows of two. None is where a body can be, which would be left out as its own image.
+inline constexpr std::size_t kSeenPoints = 4;
 [[nodiscard]] const char* body_name(std::size_t body);
 
 // Reads the cell. All pairs are published.

@@ -15,10 +15,9 @@
 namespace clearance::test::lies {
 namespace {
 
-constexpr std::uint64_t kOwners = 100, kRivals = 200, kMapMaker = 300, kCamera = 400;  // writers
+constexpr std::uint64_t kOwners = 100, kRivals = 200, kMapMaker = 300;  // writers
 constexpr const char* kTfType = "tf2_msgs/msg/TFMessage";
 constexpr double kFarAway = 50.0;  // m
-constexpr std::int64_t kPicturePeriod = 20 * kMs;
 
 std::size_t index(Channel channel) { return static_cast<std::size_t>(channel); }
 std::uint64_t writer_of(Channel channel, bool is_rival) {
@@ -50,6 +49,7 @@ LyingSenders::LyingSenders(const Scene& scene, const TrueMotion& truth, const Se
   for (bool& sends : sends_velocities_) sends = random_.chance(0.5);
   for (bool& by_ros : by_ros_) by_ros = random_.chance(0.5);
   for (std::int64_t& period : period_) period = random_.integer(1, 2) * kMs;
+  period_[index(Channel::kPoints)] = kPicturePeriod;
 }
 
 void LyingSenders::send(std::int64_t t) {
@@ -68,13 +68,12 @@ void LyingSenders::send(std::int64_t t) {
     }
     if (t % period_[i] == 0) speak(channel, t);
   }
-  if (t % kPicturePeriod == 0) show(t);
   deliver(t);
 }
 
 // Tells the intake which writers exist, as discovery does.
 void LyingSenders::keep_writers(std::int64_t t) {
-  std::vector<std::uint64_t> writers{kMapMaker, kCamera};
+  std::vector<std::uint64_t> writers{kMapMaker};
   for (std::size_t i = 0; i < kChannels; ++i) {
     const auto channel = static_cast<Channel>(i);
     const Fault* const fault = fault_of(channel);
@@ -100,22 +99,6 @@ void LyingSenders::speak(Channel channel, std::int64_t t) {
   const bool is_lost = t > kSecond / 5 && random_.chance(sending_.loss);
   if (said.is_silent || is_lost) return;
   post(message(channel, words(channel, said, t), false), t, said, channel);
-}
-
-// The camera sees the point where it is.
-void LyingSenders::show(std::int64_t t) {
-  const TruePose eye = truth_.pose(Channel::kEye, t);
-  const TruePoint off = truth_.centres(t)[kEyeBody] - eye.col(3).head<3>();
-  const Eigen::Vector3f seen = (eye.topLeftCorner<3, 3>().transpose() * off).cast<float>();
-  camera::CloudText cloud;
-  cloud.width = 1;
-  cloud.row_step = cloud.point_step;
-  cloud.data.assign(cloud.point_step, 0);
-  std::memcpy(cloud.data.data(), seen.data(), 3 * sizeof(float));
-  cloud.stamp_ns = start_ns_ + t;
-  cloud.frame = child_of(Channel::kEye);
-  under_way_.push_back({t, topic("/eye/points", "sensor_msgs/msg/PointCloud2"), kCamera,
-                        start_ns_ + t, cloud.cdr()});
 }
 
 void LyingSenders::speak_as_rival(Channel channel, const Rival& rival, std::int64_t t) {
@@ -155,6 +138,22 @@ LyingSenders::Words LyingSenders::words(Channel channel, const Told& told, std::
     }
     return words;
   }
+  if (channel == Channel::kPoints) {
+    const TruePose eye = truth_.pose(Channel::kEye, told.value_at);
+    for (std::size_t i = 0; i < kSeenPoints; ++i) {
+      const TruePoint off = TrueMotion::seen_points()[i] - eye.col(3).head<3>();
+      const TruePoint seen =
+          (eye.topLeftCorner<3, 3>().transpose() * off + told.offset.cast<long double>()) *
+          told.length_scale;
+      const bool is_missing = told.is_nan || (told.is_torn && i + 1 < kSeenPoints);
+      words.points[i] = is_missing ? Eigen::Vector3f::Constant(std::nanf(""))
+                                   : Eigen::Vector3f(seen.cast<float>());
+    }
+    words.parent = told.is_far ? "far" : child_of(Channel::kEye);
+    words.has_other_layout = told.has_other_layout;
+    words.is_padded = told.is_padded;
+    return words;
+  }
   words.pose = truth_.pose(channel, told.value_at);
   words.pose.col(3).head<3>() += told.offset.cast<long double>();
   words.pose.col(3).head<3>() *= told.length_scale;
@@ -173,7 +172,8 @@ LyingSenders::Words LyingSenders::words(Channel channel, const Told& told, std::
 LyingSenders::Message LyingSenders::message(Channel channel, const Words& words, bool is_rival) {
   Message made = is_ball(channel)    ? poses(channel, words, is_rival)
                  : is_robot(channel) ? joint_states(channel, words, is_rival)
-                                     : frames(channel, words);
+                 : is_frame(channel) ? frames(channel, words)
+                                     : picture(words);
   made.writer = writer_of(channel, is_rival);
   return made;
 }
@@ -248,6 +248,25 @@ LyingSenders::Message LyingSenders::frames(Channel channel, const Words& words) 
   made.cdr = transforms(words.stamp_ns, words.stamp_ns,
                         {frame_text(words.parent, child_of(channel), pose)}, topic_name)
                  .cdr;
+  return made;
+}
+
+// Two rows of two points.
+LyingSenders::Message LyingSenders::picture(const Words& words) {
+  camera::CloudText cloud;
+  cloud.width = cloud.height = 2;
+  cloud.row_step = (words.is_padded ? 2 : 1) * cloud.width * cloud.point_step;
+  cloud.data.assign(cloud.height * cloud.row_step, 0);
+  for (std::size_t i = 0; i < kSeenPoints; ++i) {
+    std::memcpy(cloud.data.data() + i / 2 * cloud.row_step + i % 2 * cloud.point_step,
+                words.points[i].data(), 3 * sizeof(float));
+  }
+  if (words.has_other_layout) cloud.fields[1].offset = cloud.fields[2].offset = 0;
+  cloud.stamp_ns = words.stamp_ns;
+  cloud.frame = words.parent;
+  Message made;
+  made.topic = topic("/eye/points", "sensor_msgs/msg/PointCloud2");
+  made.cdr = cloud.cdr();
   return made;
 }
 

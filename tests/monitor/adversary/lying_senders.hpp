@@ -51,13 +51,14 @@ class LyingSenders {
     std::size_t told_joints = kJoints;  // the first ones
     bool has_velocities = false, is_static = false;
     double quaternion_scale = 1.0;
-    std::string parent;  // of a frame
+    std::string parent;  // of a frame, or of points
+    std::array<Eigen::Vector3f, kSeenPoints> points{};
+    bool has_other_layout = false, is_padded = false;
     std::int64_t stamp_ns = 0;
   };
 
   void keep_writers(std::int64_t t);
   void speak(Channel channel, std::int64_t t);
-  void show(std::int64_t t);
   void speak_as_rival(Channel channel, const Rival& rival, std::int64_t t);
   [[nodiscard]] const Fault* fault_of(Channel channel) const;
   [[nodiscard]] Words words(Channel channel, const Told& told, std::int64_t t) const;
@@ -65,6 +66,7 @@ class LyingSenders {
   [[nodiscard]] Message poses(Channel channel, const Words& words, bool is_rival);
   [[nodiscard]] Message joint_states(Channel channel, const Words& words, bool is_rival);
   [[nodiscard]] Message frames(Channel channel, const Words& words);
+  [[nodiscard]] Message picture(const Words& words);
   void post(Message message, std::int64_t t, const Told& told, Channel channel);
   void deliver(std::int64_t t);
   [[nodiscard]] std::uint32_t topic(const std::string& name, const std::string& type);

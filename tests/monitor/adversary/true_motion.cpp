@@ -123,6 +123,14 @@ std::array<TrueJoint, kJoints> TrueMotion::joints(Channel robot, std::int64_t t)
   return joints;
 }
 
+// Nothing else is higher than 1.7 m.
+const std::array<TruePoint, kSeenPoints>& TrueMotion::seen_points() {
+  static const std::array<TruePoint, kSeenPoints> kPoints{
+      TruePoint{0.6L, -0.3L, 1.9L}, TruePoint{1.8L, -1.4L, 1.85L}, TruePoint{0.8L, -1.6L, 2.0L},
+      TruePoint{1.7L, 0.1L, 1.9L}};
+  return kPoints;
+}
+
 std::array<TruePoint, kBodies> TrueMotion::centres(std::int64_t t) const {
   std::array<TruePoint, kBodies> centres;
   for (std::size_t i = 0; i < 3; ++i) {
@@ -131,7 +139,7 @@ std::array<TruePoint, kBodies> TrueMotion::centres(std::int64_t t) const {
   const TruePose odom = pose(Channel::kOdom, t);
   centres[kFollowerBody] = moved(odom * pose(Channel::kFollower, t), 0.15L, 0, 0);
   centres[kRockBody] = {1.0L, 1.3L, 0.3L};
-  centres[kEyeBody] = {0.6L, -0.3L, 1.9L};
+  centres[kEyeBody] = seen_points()[0];
   add_links(odom * pose(Channel::kBase, t), joints(Channel::kArm, t), kArmBody, centres);
   add_links(translation(2.6L, 0.4L, 0), joints(Channel::kPost, t), kPostBody, centres);
   return centres;

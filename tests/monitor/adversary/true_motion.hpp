@@ -32,7 +32,9 @@ class TrueMotion {
   // `robot` is kArm or kPost.
   [[nodiscard]] std::array<TrueJoint, kJoints> joints(Channel robot, std::int64_t t) const;
 
-  // The centres of all bodies in the world, m.
+  // The points that the camera sees: at rest, in the world, m.
+  [[nodiscard]] static const std::array<TruePoint, kSeenPoints>& seen_points();
+  // The centres of all bodies in the world, m; of what the camera sees, the first point.
   [[nodiscard]] std::array<TruePoint, kBodies> centres(std::int64_t t) const;
   [[nodiscard]] static double radius(std::size_t body);
   // No centre of the body is faster, m/s.

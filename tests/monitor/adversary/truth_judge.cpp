@@ -14,13 +14,15 @@ constexpr double kRounding = 1e-9;  // m
 // Between two ticks a body is taken to move straight from one pose to the next. The path bends: an
 // acceleration of 20 m/s2 over 10 ms departs by a quarter of a millimetre.
 constexpr double kBend = 2.5e-4;  // m
+// The motion that a question states departs from the true one by less, m.
+constexpr double kPathError = 1e-6;
 // A velocity from differences is that of half an interval ago, or of a stamp an age limit ago. No
 // body accelerates by more than 8 m/s2.
 constexpr double kSpeedError = 8.0 * 0.02 + 0.02;  // m/s
 // The path length of the farthest point of a robot when a joint rotates by a radian, m.
 constexpr double kLever = 2.1;
-// The camera is nearer to the point that it sees, m. Bounds are those of the ball by which it knows
-// the point, whose radius is the stated error of the depth.
+// The camera is nearer to the points that it sees, m. Bounds are those of the balls by which it
+// knows them, whose radius is the stated error of the depth.
 constexpr double kSight = 2.0;
 constexpr double kSeenRadius = 0.002 * 1.001;
 
@@ -32,7 +34,7 @@ bool is_link_of(Channel robot, std::size_t body) {
 bool rests_on(std::size_t body, Channel channel) {
   if (is_ball(channel)) return body == static_cast<std::size_t>(channel);
   if (channel == Channel::kFollower) return body == kFollowerBody;
-  if (channel == Channel::kEye) return body == kEyeBody;
+  if (channel == Channel::kEye || channel == Channel::kPoints) return body == kEyeBody;
   if (channel == Channel::kBase) return is_link_of(Channel::kArm, body);
   if (channel == Channel::kOdom) return body == kFollowerBody || is_link_of(Channel::kArm, body);
   return is_link_of(channel, body) && body != kArmBody && body != kPostBody;
@@ -43,7 +45,7 @@ double slack_of(Channel channel) {
   if (is_robot(channel)) return kLever * kJointSpeed[0] * 1e-9 * static_cast<double>(kAgeLimit);
   if (channel == Channel::kOdom || channel == Channel::kBase)
     return kBaseSpeed * 1e-9 * static_cast<double>(kBaseAgeLimit);
-  if (channel == Channel::kEye)
+  if (channel == Channel::kEye || channel == Channel::kPoints)
     return (1.0 + kSight) * kEyeSpeed * 1e-9 * static_cast<double>(kEyeAgeLimit);
   return kBallSpeed * 1e-9 * static_cast<double>(kAgeLimit);
 }
@@ -56,7 +58,7 @@ std::int64_t age_limit_of(std::size_t body) {
 
 const char* name(Claim claim) {
   constexpr std::array<const char*, kClaims> kNames{"lower", "upper",      "swept lower", "minimum",
-                                                    "zone",  "separation", "speed"};
+                                                    "zone",  "separation", "speed",       "answer"};
   return kNames[static_cast<std::size_t>(claim)];
 }
 
@@ -72,6 +74,8 @@ std::string Verdict::text() const {
         fmt::format("  {}: false {} times, by {:.4f} at worst; first: {}\n",
                     name(static_cast<Claim>(i)), claims[i].times, claims[i].worst, claims[i].first);
   }
+  text += fmt::format("  questions: {} asked, {} answered, {} free; {}\n", asked, answered, free,
+                      refusal);
   return text + fmt::format("  certified in {:.2f} % of pairs and ticks, {} in {:.2f} %\n",
                             100.0 * certified, least_pair, 100.0 * least_certified);
 }
@@ -116,7 +120,9 @@ void TruthJudge::find_allowed(std::int64_t t) {
     for (std::size_t body = 0; body < kBodies; ++body) {
       if (!rests_on(body, fault.channel)) continue;
       Allowed& of = allowed_[body];
-      if (t >= fault.from && t < fault.to + kSlackEnds)
+      // A late picture is in use for another second, since what it shows has a stated speed.
+      const std::int64_t ends = kSlackEnds + (body == kEyeBody ? kSecond : 0);
+      if (t >= fault.from && t < fault.to + ends)
         of.error += admitted.slack * slack_of(fault.channel);
       of.is_excused |= t >= fault.from && t < fault.from + admitted.delay;
       const std::int64_t delay = speed_delay(fault.channel);
@@ -146,7 +152,13 @@ bool TruthJudge::is_excused(std::uint32_t pair) const {
 
 long double TruthJudge::distance(std::uint32_t pair, const Centres& centres) const {
   const std::size_t a = body_[scene_.pairs[pair].first], b = body_[scene_.pairs[pair].second];
-  return (centres[a] - centres[b]).norm() - TrueMotion::radius(a) - TrueMotion::radius(b);
+  const double radii = TrueMotion::radius(a) + TrueMotion::radius(b);
+  if (a != kEyeBody && b != kEyeBody) return (centres[a] - centres[b]).norm() - radii;
+  const TruePoint& other = centres[a == kEyeBody ? b : a];
+  long double least = std::numeric_limits<long double>::infinity();
+  for (const TruePoint& seen : TrueMotion::seen_points())
+    least = std::min(least, (other - seen).norm() - radii);
+  return least;
 }
 
 long double TruthJudge::least_since(std::uint32_t pair) const {
@@ -242,6 +254,47 @@ void TruthJudge::judge_separation(const PairSeparation& pair) {
                fmt::format("{}: measured {:.3f} and {:.3f} m/s, true {:.3f} and {:.3f}",
                            pair_name(scene_, pair.pair), pair.human_speed, pair.robot_speed,
                            human_speed, robot_speed));
+  }
+}
+
+// The question states where the joints are, so faults of theirs excuse nothing; the ages of all
+// other inputs are part of the answer. The arm's base is held where it was last heard, and moves.
+void TruthJudge::judge(const Answer& answer, const std::optional<std::string>& refusal,
+                       const std::vector<double>& times) {
+  ++verdict_.asked;
+  if (refusal) verdict_.refusal = *refusal;
+  if (refusal) return;
+  ++verdict_.answered;
+  const MarginAnswer& margin = answer.margins.front();
+  const bool is_free = margin.verdict == clearance::Verdict::kFree;
+  verdict_.free += is_free ? 1 : 0;
+  const double claimed = is_free ? std::max(answer.lower, margin.margin) : answer.lower;
+  const std::int64_t last = t_ + std::llround(1e9 * times.back());
+  for (std::int64_t t = t_; t <= last; t += kMs) {
+    const Centres centres = truth_.centres(t);
+    for (std::uint32_t pair = 0; pair < scene_.pairs.size(); ++pair) {
+      const std::array bodies{body_[scene_.pairs[pair].first], body_[scene_.pairs[pair].second]};
+      double error = kPathError;
+      bool is_of_robot = false, is_excused = false;
+      for (const std::size_t body : bodies) {
+        const bool is_link = is_link_of(Channel::kArm, body) || is_link_of(Channel::kPost, body);
+        is_of_robot |= is_link;
+        const bool is_of_arm = is_link && !is_link_of(Channel::kPost, body);
+        if (is_of_arm) error += kBaseSpeed * 1e-9 * static_cast<double>(t - t_ + kBaseAgeLimit);
+        if (is_link && !is_of_arm) continue;
+        const Allowed& of = allowed_[is_of_arm ? kArmBody : body];
+        is_excused |= of.is_excused;
+        error += of.error + (body == kEyeBody ? kSeenRadius : 0.0);
+      }
+      if (!is_of_robot || is_excused) continue;
+      const auto truth = static_cast<double>(distance(pair, centres));
+      const double by = claimed - std::max(truth, 0.0) - error;
+      if (by <= 0.0) continue;
+      note_false(Claim::kAnswer, by,
+                 fmt::format("{}: at least {:.4f}, {} is at {:.4f} after {} ms",
+                             is_free ? "free" : "not free", claimed, pair_name(scene_, pair), truth,
+                             (t - t_) / kMs));
+    }
   }
 }
 

@@ -6,10 +6,12 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "monitor/interface/question.hpp"
 #include "monitor/interface/report.hpp"
 #include "tests/monitor/adversary/lies.hpp"
 #include "tests/monitor/adversary/true_motion.hpp"
@@ -25,6 +27,7 @@ enum class Claim : std::uint8_t {
   kZone,        // a zone is not active
   kSeparation,  // the clearance of a separation
   kSpeed,       // a speed that is said to be measured
+  kAnswer,      // the lower bound of a question's answer, or its 'free'
   kCount
 };
 inline constexpr auto kClaims = static_cast<std::size_t>(Claim::kCount);
@@ -41,6 +44,8 @@ struct Verdict {
   // again: of all pairs, and of the worst one.
   double certified = 1.0, least_certified = 1.0;
   std::string least_pair;
+  std::uint64_t asked = 0, answered = 0, free = 0;  // questions
+  std::string refusal;                              // of the last one that has no answer
 
   [[nodiscard]] bool is_true() const;
   [[nodiscard]] std::string text() const;
@@ -60,6 +65,10 @@ class TruthJudge {
 
   // `t` is the time of the tick, ns since the start.
   void judge(const Report& report, std::int64_t t);
+  // Judges the answer about the true motion of both robots, which begins at the last tick. If there
+  // is a refusal, there is no answer.
+  void judge(const Answer& answer, const std::optional<std::string>& refusal,
+             const std::vector<double>& times);
   [[nodiscard]] Verdict verdict() const;
 
  private:
