@@ -103,7 +103,7 @@ bool strikes_points(Lie lie) {
   return std::ranges::count(kAll, lie) != 0;
 }
 
-// Makes the lies that only points tell, or tell in another way.
+// Makes the lies that only points tell, or that they tell differently.
 bool is_told_of_points(const Fault& fault, Told& told) {
   if (fault.channel != Channel::kPoints) return false;
   if (fault.lie == Lie::kWrongStamps) told.value_at -= static_cast<std::int64_t>(fault.size);
