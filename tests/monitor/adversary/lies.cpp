@@ -15,6 +15,9 @@ std::int64_t age_limit(Channel channel) {
   return channel == Channel::kOdom || channel == Channel::kBase ? kBaseAgeLimit : kAgeLimit;
 }
 
+// How long a picture that the channel has placed is in use at most.
+std::int64_t old_picture(Channel channel) { return channel == Channel::kEye ? kEyeAgeLimit : 0; }
+
 double stated_speed(Channel channel) {
   if (channel == Channel::kEye) return kEyeSpeed;
   return channel == Channel::kOdom || channel == Channel::kBase ? kBaseSpeed : kBallSpeed;
@@ -218,9 +221,10 @@ Admissible admissible(const Fault& fault) {
     // A picture that repeats is noticed at once.
     case Lie::kFreezeAtRest:
       return {is_seen(fault.channel) ? 0 : kFrozenLimit + 10 * kMs, 0.0};
-    // Positions are compared with one that is up to six age limits old, with one in hand.
+    // Positions are compared with one that is up to six age limits old, with one in hand. A picture
+    // that was placed by the lie stays in use until it is old.
     case Lie::kDrift:
-      return {7 * age_limit(fault.channel), 1.0};
+      return {7 * age_limit(fault.channel) + old_picture(fault.channel), 1.0};
     // What is seen is of a time before the stamp: meanwhile it has moved, or the camera has, by
     // less than the age limit allows.
     case Lie::kWrongStamps:
@@ -233,7 +237,7 @@ Admissible admissible(const Fault& fault) {
     // Only the lie is heard, until the owner speaks for the first time and its message has come. A
     // picture that was placed by the lie stays in use until it is old.
     case Lie::kRivalFirst:
-      return {kOwnerStarts + 5 * kMs + (fault.channel == Channel::kEye ? kEyeAgeLimit : 0), 0.0};
+      return {kOwnerStarts + 5 * kMs + old_picture(fault.channel), 0.0};
     // All others can be noticed in the tick that hears them.
     default:
       return {};
@@ -248,6 +252,8 @@ Told told(const Fault& fault, std::int64_t t) {
                                      Lie::kWrongSign, Lie::kWrongUnit};
   if (std::ranges::count(kOfVelocities, fault.lie) != 0) told.velocities = true;
   if (t < fault.from || t >= fault.to || is_told_of_seen(fault, t, told)) return told;
+  told.is_repeated = fault.lie == Lie::kDuplicated;
+  if (fault.lie == Lie::kHeld) told.held_until = fault.to;
   switch (fault.lie) {
     case Lie::kFreezeInMotion:
       told.value_at = fault.from;
@@ -289,14 +295,8 @@ Told told(const Fault& fault, std::int64_t t) {
     case Lie::kReordered:
       told.longest_delay = 30 * kMs;
       break;
-    case Lie::kHeld:
-      told.held_until = fault.to;
-      break;
     case Lie::kMiscounted:
       (fault.flag ? told.has_joint_twice : told.has_too_few) = true;
-      break;
-    case Lie::kDuplicated:
-      told.is_repeated = true;
       break;
     case Lie::kOutOfLimits:
       told.joint_offset[fault.joint] = fault.size;

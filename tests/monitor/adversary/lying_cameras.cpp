@@ -121,7 +121,7 @@ LyingSenders::Message LyingSenders::seen(Channel channel, const Words& words) {
                       words.parent, (words.is_padded ? 2.0 : words.scale) * kCube));
 }
 
-// It comes once: the lens keeps its form.
+// Comes once: the lens keeps its form.
 LyingSenders::Message LyingSenders::camera_info(std::int64_t t) {
   camera::InfoText info;
   info.width = kColumns, info.height = kRows;

@@ -1,6 +1,6 @@
 // A cell for inputs that lie: balls by poses, a ball by tf, a robot whose base follows tf, a robot
 // that stands in the world, and a part that commands attach. A camera on tf sees points at rest.
-// One that stands sees a plate that rises and sinks, and a map has somebody who walks. Bodies are
+// One that stands sees a plate that rises and sinks, and a map has a person who walks. Bodies are
 // balls, points and a rectangle, so the true distance has a closed form.
 #pragma once
 
@@ -55,9 +55,8 @@ inline constexpr double kEyeSpeed = 1.0;                 // of the camera, m/s a
 inline constexpr std::int64_t kEyeAgeLimit = 100 * kMs;  // of its frame, and of pictures
 inline constexpr std::int64_t kFrozenLimit = 100 * kMs;
 inline constexpr std::int64_t kPicturePeriod = 20 * kMs;  // of both cameras
-inline constexpr std::int64_t kMapPeriod = 100 * kMs;
-inline constexpr std::int64_t kMapAgeLimit = 250 * kMs;
-inline constexpr double kSeenSpeed = 0.6;  // of the plate and of who walks, m/s
+inline constexpr std::int64_t kMapPeriod = 50 * kMs;
+inline constexpr double kSeenSpeed = 0.6;  // of the plate and of the person, m/s
 // Joints in their order: shoulder, elbow (revolute), spin (continuous), push (prismatic).
 inline constexpr std::size_t kJoints = 4;
 inline constexpr std::array<const char*, kJoints> kJointNames{"shoulder", "elbow", "spin", "push"};
@@ -80,7 +79,7 @@ inline constexpr std::array<double, 3> kPartPlace{-3.0, 2.5, 0.5}, kTipFromPart{
 
 // A body, in the order of the true motion: balls 0 to 2, the follower, the rock, the links of the
 // arm from its foot to its tip, those of the post, the points that the camera sees, the plate that
-// the lens sees, who walks in the map, and the part.
+// the lens sees, the person in the map, and the part.
 inline constexpr std::size_t kLinks = 5;
 inline constexpr std::size_t kFollowerBody = 3, kRockBody = 4, kArmBody = 5,
                              kPostBody = kArmBody + kLinks, kEyeBody = kPostBody + kLinks,

@@ -40,7 +40,7 @@ class TrueMotion {
   [[nodiscard]] static const std::array<TruePoint, kSeenPoints>& seen_points();
   // The depth of the plate before the lens, m.
   [[nodiscard]] static long double plate_depth(std::int64_t t);
-  // Who walks in the map is a point, in the world, m.
+  // The place of the person in the map, who is a point, in the world, m.
   [[nodiscard]] static TruePoint walker(std::int64_t t);
   // The centres of all bodies in the world, m; of what the camera sees, the first point.
   using Centres = std::array<TruePoint, kBodies>;

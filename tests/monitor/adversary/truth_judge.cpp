@@ -147,9 +147,9 @@ void TruthJudge::find_allowed(std::int64_t t) {
     for (std::size_t body = 0; body < kBodies; ++body) {
       if (!rests_on(body, fault.channel)) continue;
       Allowed& of = allowed_[body];
-      // A late picture is in use for another second, since what it shows has a stated speed.
-      const bool shows = body >= kEyeBody && body <= kMapBody;
-      const std::int64_t ends = kSlackEnds + (shows ? kSecond : 0);
+      // A late picture of the lens or map is in use for another second: its speed is stated.
+      const bool may_be_late = body == kLensBody || body == kMapBody;
+      const std::int64_t ends = kSlackEnds + (may_be_late ? kSecond : 0);
       if (t >= fault.from && t < fault.to + ends)
         of.error += admitted.slack * slack_of(fault.channel);
       of.is_excused |= t >= fault.from && t < fault.from + admitted.delay;
