@@ -80,26 +80,21 @@ struct PositionCandidate {
   void use() const noexcept {
     const std::int64_t interval_ns = elapsed(state.input.stamp_ns, stamp_ns);
     const bool sent = has_usable_velocity(variable, sample);
-    state.velocities_contradict = state.plausibility.rates_contradict();
+    state.velocities_contradict =
+        !variable.velocity_is_difference && state.plausibility.rates_contradict();
     if (sent && !state.velocities_contradict) {
       state.velocity = sample.velocity;
       state.velocity_known = true;
     } else if (state.input.has_value && interval_ns > 0) {
       state.velocity_known = interval_ns / 2 <= variable.age_limit_ns;
-      state.velocity = state.velocity_known ? mean_velocity(interval_ns, sent) : 0.0;
+      state.velocity = state.velocity_known ? metric.difference(state.position, sample.position) /
+                                                  seconds(interval_ns)
+                                            : 0.0;
     }
     state.sent_speed = speed_of(sample);
     state.position = sample.position;
     state.outside_limits = false;
     state.plausibility.use(sample.position, stamp_ns, !state.input.has_value, limits);
-  }
-
-  // The mean velocity since the last position. If what is sent contradicts it, that may still be the
-  // larger one: positions that several messages tell together do not move evenly.
-  [[nodiscard]] double mean_velocity(std::int64_t interval_ns, bool sent) const noexcept {
-    const double mean = metric.difference(state.position, sample.position) / seconds(interval_ns);
-    if (!sent || std::abs(sample.velocity) <= std::abs(mean)) return mean;
-    return mean == 0.0 ? sample.velocity : std::copysign(sample.velocity, mean);
   }
 
   [[nodiscard]] std::int64_t agree_for_ns() const noexcept {

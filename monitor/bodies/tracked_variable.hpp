@@ -18,7 +18,7 @@ struct TrackedVariable {
   double position = 0.0;  // rad or m
   // The velocity sent with the position, else the mean between the last two positions. It is zero
   // and not known after the first position, and after a gap longer than twice the age limit. If the
-  // sent velocities contradict the positions, the larger of both counts, in the mean's direction.
+  // sent velocities contradict the positions, it is the mean, too.
   double velocity = 0.0;
   // Bound of the motion since its stamp, rad or m. It is 0 unless late, and infinite if neither a
   // speed nor limits bound the motion.
