@@ -26,7 +26,8 @@ std::uint64_t first_seed() { return stated("CLEARANCE_LYING_FIRST", 1); }
 
 Verdict expect_truth(const Cell& cell, const LyingRun& run) {
   const Verdict verdict = judged(cell, run);
-  EXPECT_TRUE(verdict.is_true() && verdict.least_certified >= kAvailable)
+  EXPECT_TRUE(verdict.is_true() && verdict.least_certified >= kAvailable &&
+              verdict.recovered <= TruthJudge::kRecovers)
       << explained(cell, run, verdict);
   return verdict;
 }

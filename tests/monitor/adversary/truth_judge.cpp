@@ -360,6 +360,10 @@ void TruthJudge::note_false(Claim claim, double by, const std::string& what) {
 
 Verdict TruthJudge::verdict() const {
   Verdict verdict = verdict_;
+  const bool is_late = t_ > available_from_ && std::ranges::any_of(known_since_, [](auto since) {
+                         return since != kSettledOnce;
+                       });
+  if (is_late) verdict.recovered = t_ - ended_;
   std::uint64_t certified = 0, judged = 0;
   for (std::uint32_t pair = 0; pair < scene_->pairs.size(); ++pair) {
     if (judged_[pair] == 0) continue;
