@@ -22,7 +22,7 @@ constexpr std::int64_t kStartOfLies = 1'700'000'000 * kSecond;  // CLOCK_REALTIM
 constexpr double kAsks = 0.005;                // the share of ticks after which is asked
 constexpr std::int64_t kWaypoints = 40 * kMs;  // between two of them
 
-// The ports of the loop, and what makes the camera's frames. The time is that of its only clock.
+// The ports of the loop, and what makes the frames of sensors. The time is that of its only clock.
 class LyingWorld final : public Clock, public PoseSource, public ReportSink {
  public:
   LyingWorld(const Cell& cell, const LyingRun& run)
@@ -126,7 +126,7 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
   // Changes the scene, or renews the monitor for a partner, which ends with its scene.
   void change() {
     if (now_ < 0) return;
-    if (commands_.waits_since(now_)) partner_.reset();
+    if (commands_.waits_since(now_) && !loop_->busy()) partner_.reset();
     commands_.work(now_, *loop_, *this);
     if (partner_) partner_->catch_up();
     if (partner_from_ < 0 || now_ < partner_from_ || has_built_ || loop_->busy()) return;
