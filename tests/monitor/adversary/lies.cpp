@@ -15,7 +15,7 @@ std::int64_t age_limit(Channel channel) {
   return channel == Channel::kOdom || channel == Channel::kBase ? kBaseAgeLimit : kAgeLimit;
 }
 
-// How long a picture that the channel has placed is in use at most.
+// How long a picture that this channel has placed is in use: late, it is unknown (config/KEYS.md).
 std::int64_t old_picture(Channel channel) { return channel == Channel::kEye ? kEyeAgeLimit : 0; }
 
 double stated_speed(Channel channel) {

@@ -14,8 +14,6 @@
 // - The points of a camera are false and move as points may. A program that publishes them first,
 //   or takes them over from one that is silent, is believed.
 // - A cloud of one row loses points: only rows of a picture say how many there have to be.
-// - A frame places pictures until another publisher, or its own speed, contradicts it, and the cell
-//   states a `max_speed` of what they show. They stay in use until the next one.
 // - A map stands still under fresh stamps: so does one of a place where nothing changes.
 #pragma once
 

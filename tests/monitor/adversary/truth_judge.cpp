@@ -147,7 +147,7 @@ void TruthJudge::find_allowed(std::int64_t t) {
     for (std::size_t body = 0; body < kBodies; ++body) {
       if (!rests_on(body, fault.channel)) continue;
       Allowed& of = allowed_[body];
-      // A late picture of the lens or map is in use for another second: its speed is stated.
+      // A late picture that tf has not placed is in use for another second: its speed is stated.
       const bool may_be_late = body == kLensBody || body == kMapBody;
       const std::int64_t ends = kSlackEnds + (may_be_late ? kSecond : 0);
       if (t >= fault.from && t < fault.to + ends)
