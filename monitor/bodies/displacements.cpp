@@ -70,8 +70,8 @@ void Displacer::displace(Inputs& inputs) noexcept {
 }
 
 // A frame is placed by what was heard of its carrier around its stamp, which a contradiction puts
-// in doubt. So does the end of frames that tf places: a contradiction there may have ended them.
-// Later frames are trusted again.
+// in doubt. Later frames are trusted again. A late frame that tf places is not trusted either: a
+// contradiction in tf may have ended the frames.
 void Displacer::visit_seen(bool first, Inputs& inputs) noexcept {
   for (const std::uint32_t i : seen_) {
     const std::uint32_t sensor = scene_.objects[i].sensor;
@@ -84,8 +84,8 @@ void Displacer::visit_seen(bool first, Inputs& inputs) noexcept {
             ? !inputs.objects[carrier.object].known()
             : carrier.kind == RobotBase::Kind::kLink &&
                   inputs.robots.is_lost(carrier.robot, carrier.link, inputs.objects);
-    if (is_lost || is_late_on_tf) lost_ns = inputs.time.now_ns;
-    visit(i, first, inputs, input.stamp_ns <= lost_ns);
+    if (is_lost) lost_ns = inputs.time.now_ns;
+    visit(i, first, inputs, is_late_on_tf || input.stamp_ns <= lost_ns);
   }
 }
 

@@ -34,6 +34,7 @@ class SeenObjects : public testing::Test {
     scene = test::cell_of(std::move(objects));
     scene.sensors.resize(1);
     scene.sensors[0].object = kSeen;
+    scene.sensors[0].frames_by_message = false;
     for (ObjectPair& pair : scene.pairs) pair.publish = true;
     scene.zones.push_back(test::zone_over(scene, 0.1, 0.2));
     std::erase(scene.zones[0].pairs, 0u);  // arm and hand
