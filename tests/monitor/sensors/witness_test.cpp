@@ -219,6 +219,30 @@ TEST(SecondWitness, ShowsALostZeroBeforeItDeniesTheRobot) {
   EXPECT_NEAR(residual(0.004, stated, 1), residual(0.0, stated, 1), 1e-6) << "the other arm";
 }
 
+// Links before the joint are where they were, but for what the others hide of them.
+TEST(SecondWitness, ShowsWhichLinksALostZeroMoves) {
+  const std::string stated = "errors: {joints: {position: 0.02}}\n";
+  WitnessedCell good(two_arms_and_eye(stated)), off(two_arms_and_eye(stated));
+  off.off()[variable_of(off.cell(), "left_joint4")] = -0.01;
+  const RaysOfRobot before = good.look(0), after = off.look(0);
+  const Robot& robot = good.cell().scene.robots[0];
+  std::size_t carries = 0;  // the joint; link carries + 1 is the first that hangs on it
+  while (robot.joints[carries].name != "left_joint4") ++carries;
+  std::uint32_t agreeing = 0;
+  double still = 0.0, moved = 0.0;  // the largest change of a median
+  for (std::size_t link = 0; link < robot.links.size(); ++link) {
+    const RaysMet &was = before.links[link], &is = after.links[link];
+    agreeing += was.agreeing;
+    EXPECT_LE(std::isnan(was.residual_p50), was.agreeing < 2 * Witness::kLeastRays);
+    if (std::isnan(was.residual_p50) || std::isnan(is.residual_p50)) continue;
+    double& change = link > carries ? moved : still;
+    change = std::max(change, std::abs(is.residual_p50 - was.residual_p50));
+  }
+  EXPECT_EQ(agreeing, before.agreeing) << "each ray is of one link";
+  EXPECT_LT(still, 0.0002);
+  EXPECT_GT(moved, 0.0005) << "by up to 10 mrad over its length";
+}
+
 TEST(SecondWitness, SeesALostZeroOfAJointInFivePictures) {
   WitnessedCell watched(two_arms_and_eye());
   watched.off()[variable_of(watched.cell(), "left_joint2")] = -0.2;
