@@ -134,7 +134,8 @@ Witness::Witness(const Scene& scene)
     : scene_(scene), errors_(scene), met_(kRays), rays_(scene.robots.size()) {
   residuals_.reserve(kRays);
   measured_.reserve(kRays);
-  for (std::size_t r = 0; r < rays_.size(); ++r) rays_[r].links.resize(scene.robots[r].links.size());
+  for (std::size_t r = 0; r < rays_.size(); ++r)
+    rays_[r].links.resize(scene.robots[r].links.size());
   std::size_t parts = 0;
   for (const Object& object : scene.objects) parts += object.parts.size();
   placed_.reserve(parts);
