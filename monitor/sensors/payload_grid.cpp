@@ -7,9 +7,8 @@
 namespace clearance {
 namespace {
 
-// Nearly all pictures: four of five. Noise moves an element to the next cell in some pictures, so
-// its neighbours count, and a cell of its own in half of them.
-constexpr std::uint32_t kNearly = 4, kOf = 5, kOwnShare = 2;
+// Nearly all pictures have an element in a cell or beside it, and half of them in the cell itself.
+constexpr std::uint32_t kOwnShare = 2;
 // Of the elements of a thing, so many have to have come to a free place. What it was beside itself
 // in the picture before is not free.
 constexpr std::uint32_t kCameShare = 4;
@@ -93,7 +92,7 @@ std::uint32_t PayloadGrid::history_around(std::uint16_t cell) const noexcept {
 bool PayloadGrid::stays(std::uint16_t cell) const noexcept {
   const std::uint32_t window = ~0U >> (32 - pictures_);
   if (ones(cells_[cell].had & window) * kOwnShare < pictures_) return false;
-  return ones(history_around(cell) & window) * kOf >= pictures_ * kNearly;
+  return is_nearly_all(ones(history_around(cell) & window), pictures_);
 }
 
 // Collects the cells that stay and hang together with this one, over whatever the present picture
@@ -110,6 +109,7 @@ PayloadGrid::Thing PayloadGrid::collect(std::uint16_t from) noexcept {
     if (is_at_border(cell)) thing.ends = false;
     if (stays(cell)) {
       thing_.push_back(cell);
+      thing.nearest = std::min(thing.nearest, middle_of(cell).norm());
       thing.had += ones(cells_[cell].had & window);
       thing.came += ones(cells_[cell].came & window);
     }
@@ -138,7 +138,7 @@ FoundBox PayloadGrid::box() const noexcept {
   return {0.5 * (low + high), high - low};
 }
 
-std::optional<FoundBox> PayloadGrid::find() noexcept {
+std::optional<FoundBox> PayloadGrid::find(double reach) noexcept {
   std::ranges::fill(visited_, std::uint8_t{0});
   found_.clear();
   for (std::size_t i = 0; i < kCells; ++i) {
@@ -146,7 +146,8 @@ std::optional<FoundBox> PayloadGrid::find() noexcept {
     if (visited_[i] != 0 || !stays(cell)) continue;
     const Thing thing = collect(cell);
     const bool came = thing.came * kCameShare >= thing.had;
-    if (thing.ends && came && thing_.size() >= std::max(kLeastCells, found_.size()))
+    if (thing.ends && came && thing.nearest <= reach &&
+        thing_.size() >= std::max(kLeastCells, found_.size()))
       found_.swap(thing_);
   }
   if (found_.empty()) return std::nullopt;

@@ -38,16 +38,21 @@ class PayloadGrid {
   void count() noexcept;
   [[nodiscard]] bool is_full() const noexcept { return counted_ >= pictures_; }
 
-  // The largest thing that nearly all counted pictures have at one place, that came there, and that
-  // ends within the grid, after count(); from the middle of the grid. Its cells are those of
-  // cells() until the next call.
-  [[nodiscard]] std::optional<FoundBox> find() noexcept;
+  // The largest thing that nearly all counted pictures have at one place, that came there, that
+  // ends within the grid and begins within `reach` of its middle, m; after count(). From the middle
+  // of the grid. Its cells are those of cells() until the next call.
+  [[nodiscard]] std::optional<FoundBox> find(double reach) noexcept;
   [[nodiscard]] std::span<const std::uint16_t> cells() const noexcept { return found_; }
   // True if the present picture has an element in this cell or beside it.
   [[nodiscard]] bool has(std::uint16_t cell) const noexcept {
     return (history_around(cell) & 1U) != 0;
   }
   [[nodiscard]] static Vec3 middle_of(std::uint16_t cell) noexcept;
+  // Four of five: noise moves an element to the next cell in some pictures, and a hand hides it.
+  [[nodiscard]] static constexpr bool is_nearly_all(std::uint32_t some,
+                                                    std::uint32_t pictures) noexcept {
+    return some * 5 >= pictures * 4;
+  }
 
  private:
   static constexpr std::size_t kCells = std::size_t{kSide} * kSide * kSide;
@@ -60,6 +65,7 @@ class PayloadGrid {
   struct Thing {
     std::uint32_t had = 0, came = 0;  // elements of all pictures, by cell
     bool ends = true;                 // within the grid
+    double nearest = 2.0 * kHalf;     // to its middle, m
   };
 
   template <class Use>

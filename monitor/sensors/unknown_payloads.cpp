@@ -15,6 +15,11 @@ constexpr std::uint32_t kLeastPictures = 5;
 constexpr double kArm = 0.1;
 // Between the postures of the pictures that show what was free, m.
 constexpr double kApart = 0.2;
+// What is held begins within this of the ball around the link's parts, m: its own image is left out
+// with a shell, and fingers may be between.
+constexpr double kBeside = 0.15;
+// What stands still leaves its cell and those beside it when the link has moved by this, m.
+constexpr double kSpread = 0.08;
 // No point of the grid is farther from its middle, m.
 constexpr double kReach = 1.7320509 * PayloadGrid::kHalf;
 
@@ -87,11 +92,17 @@ UnknownPayloads::UnknownPayloads(const Scene& scene, const Sensor& sensor)
   }
   for (const UnknownPayload& payload : payloads_) {
     Hand& hand = hands_.emplace_back(pictures_, now_);
+    hand.reach = kBeside;
     const std::uint32_t object = scene.robots[payload.robot].links[payload.link].object;
     if (object == RobotLink::kNoObject) continue;
     const std::vector<Part>& parts = scene.objects[object].parts;
     for (const Part& part : parts)
       hand.middle += part.object_from_part.position / static_cast<double>(parts.size());
+    for (const Part& part : parts) {
+      const double radius = part.shape.bounding_radius + part.shape.radius;
+      const double to_middle = (part.object_from_part.position - hand.middle).norm();
+      hand.reach = std::max(hand.reach, to_middle + radius + kBeside);
+    }
   }
 }
 
@@ -183,6 +194,21 @@ void UnknownPayloads::look(const DepthCloud& cloud, const PastPose& place,
   }
 }
 
+// False if something that stands at one place of the world may be at this place in the frame of the
+// link in nearly all counted pictures.
+bool UnknownPayloads::has_moved(const Hand& hand, const Vec3& place) const noexcept {
+  const auto at = [&](std::uint32_t picture) {
+    return transform(hand.counted[picture].world_from_link, place);
+  };
+  for (std::uint32_t i = 0; i < pictures_; ++i) {
+    std::uint32_t near = 0;
+    for (std::uint32_t k = 0; k < pictures_; ++k)
+      if ((at(k) - at(i)).norm() < kSpread) ++near;
+    if (PayloadGrid::is_nearly_all(near, pictures_)) return false;
+  }
+  return true;
+}
+
 // Counts the picture if the link has moved, and finds what it holds.
 void UnknownPayloads::look(Hand& hand, UnknownPayload& payload, const Pose& world_from_link,
                            const PostureHistory& postures, std::int64_t stamp_ns) noexcept {
@@ -192,23 +218,25 @@ void UnknownPayloads::look(Hand& hand, UnknownPayload& payload, const Pose& worl
     hand.before[0] = now_;
     hand.noted = world_from_link;
   }
-  if (!is_first && motion(hand.counted, world_from_link, hand.middle) < kStep) return;
+  if (!is_first &&
+      motion(hand.counted.front().world_from_link, world_from_link, hand.middle) < kStep)
+    return;
   hand.grid.count();
-  hand.counted = world_from_link;
   hand.count = std::min(hand.count + 1, pictures_);
-  std::shift_right(hand.stamps.begin(), hand.stamps.end(), 1);
-  hand.stamps.front() = stamp_ns;
+  std::shift_right(hand.counted.begin(), hand.counted.end(), 1);
+  hand.counted.front() = {stamp_ns, world_from_link};
   if (payload.is_held || !hand.grid.is_full()) return;
-  auto found = hand.grid.find();
+  auto found = hand.grid.find(hand.reach);
   if (!found) return;
   Pose world_from_grid = world_from_link;
   world_from_grid.position = transform(world_from_link, hand.middle);
   if (is_known(transform(world_from_grid, found->centre), postures)) return;
   found->centre += hand.middle;
+  if (!has_moved(hand, found->centre)) return;
   payload = {.robot = payload.robot,
              .link = payload.link,
              .is_held = true,
-             .since_ns = hand.stamps[pictures_ - 1],
+             .since_ns = hand.counted[pictures_ - 1].stamp_ns,
              .box = *found};
 }
 

@@ -3,7 +3,8 @@
 //
 // A picture counts if the link has moved since the last one that did. What nearly all of the last
 // counted ones show at one place in the link's frame may still be a table along which the hand
-// slides, so its places in the world have to have been seen free before.
+// slides, so its places in the world have to have been seen free before. It begins near the link,
+// and it has moved farther than an obstacle could that stays in the cells of the grid.
 #pragma once
 
 #include <array>
@@ -45,8 +46,13 @@ class UnknownPayloads {
     Hand(std::uint32_t pictures, const TileDepths& empty) : grid(pictures), before{empty, empty} {}
     Vec3 middle = Vec3::Zero();  // of its grid, in the frame of the link
     PayloadGrid grid;
-    std::array<std::int64_t, PayloadGrid::kMostPictures> stamps{};  // the last one first
-    Pose counted, noted;  // of the link, in the last counted picture and in the newest of `before`
+    double reach = 0.0;  // what is held begins within this of `middle`, m
+    struct Counted {
+      std::int64_t stamp_ns = 0;
+      Pose world_from_link;
+    };
+    std::array<Counted, PayloadGrid::kMostPictures> counted;  // the last one first
+    Pose noted;                        // of the link, in the newest of `before`
     std::array<TileDepths, 2> before;  // pictures from other postures, the newest first
     std::uint32_t count = 0;           // of pictures that were counted
     std::uint32_t missing = 0;         // pictures in a row that do not have the payload
@@ -57,6 +63,7 @@ class UnknownPayloads {
             const Pose& world_from_grid) const noexcept;
   [[nodiscard]] bool is_gone(const Hand& hand, const Pose& world_from_grid) const noexcept;
   [[nodiscard]] bool is_known(const Vec3& place, const PostureHistory& postures) const noexcept;
+  [[nodiscard]] bool has_moved(const Hand& hand, const Vec3& place) const noexcept;
   void look(Hand& hand, UnknownPayload& payload, const Pose& world_from_link,
             const PostureHistory& postures, std::int64_t stamp_ns) noexcept;
 

@@ -8,6 +8,7 @@
 #include <cstring>
 #include <fstream>
 #include <iterator>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -74,6 +75,8 @@ class WitnessedCell {
   std::vector<double>& off() noexcept { return off_; }
   DrawnErrors& errors() noexcept { return exact_; }
   Vec3& camera_shift() noexcept { return camera_shift_; }
+  // Between two pictures.
+  void set_period(std::int64_t period_ns) noexcept { period_ns_ = period_ns; }
   // Bodies that the camera sees and the cell does not know. The shapes must outlive this.
   std::vector<rendering::PlacedBody>& others() noexcept { return others_; }
   // Places one of them in a link of the true machine, for the pictures that follow.
@@ -82,6 +85,8 @@ class WitnessedCell {
     holder_ = object;
     object_from_held_ = object_from_shape;
   }
+  // The cell has this object, and the machine does not: what it stands for is held or beside it.
+  void leave_to_the_cell(std::uint32_t object) { imagined_.insert(object); }
   [[nodiscard]] const Cell& cell() const noexcept { return cell_; }
   [[nodiscard]] SensorStatus status() const { return sensors_.status(0); }
   // The true place of an object in the last picture.
@@ -90,7 +95,7 @@ class WitnessedCell {
 
   // A picture, and the tick that gets it. Returns the rays that met the robot.
   RaysOfRobot look(std::uint32_t robot) {
-    now_ += camera::kFrame;
+    now_ += period_ns_;
     ++frame_;
     std::vector<JointSample> joints;
     for (std::uint32_t v = 0; v < positions_.size(); ++v)
@@ -106,6 +111,18 @@ class WitnessedCell {
     sensors_.add({}, joints, now_);
     monitor_.tick({}, joints, now_);
     return sensors_.status(0).robots[robot].rays;
+  }
+  // Of an object from what the camera sees, m.
+  [[nodiscard]] PairReport distance_from_seen(std::uint32_t object) const {
+    for (std::uint32_t p = 0; p < cell_.scene.pairs.size(); ++p) {
+      const auto& pair = cell_.scene.pairs[p];
+      const std::uint32_t eye = cell_.scene.sensors[0].object;
+      if ((pair.first == object && pair.second == eye) ||
+          (pair.first == eye && pair.second == object))
+        return monitor_.pair(p);
+    }
+    ADD_FAILURE() << cell_.scene.objects[object].name << " has no pair with the camera";
+    return {};
   }
   // Pictures until the robot is denied; 0: it is not in `most` of them.
   int pictures_until_denied(std::uint32_t robot, int most = 12) {
@@ -132,12 +149,15 @@ class WitnessedCell {
     std::vector<rendering::PlacedBody> bodies = others_;
     if (held_ != nullptr) bodies.push_back({held_, compose(poses_[holder_], object_from_held_), 0});
     for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
-      if (scene.objects[i].is_seen()) continue;
+      if (scene.objects[i].is_seen() || imagined_.contains(i)) continue;
       for (const Part& part : scene.objects[i].parts)
         bodies.push_back({&part.shape, compose(poses_[i], part.object_from_part), i});
     }
     Pose camera = scene.sensors[0].mount.base_from_root;
-    camera.position += camera_shift_;
+    const auto& [shift, turn] = exact_.objects[scene.sensors[0].object];
+    camera.position += camera_shift_ + camera.orientation * shift;
+    if (turn.norm() > 0.0)
+      camera.orientation = camera.orientation * Eigen::AngleAxisd(turn.norm(), turn.normalized());
     renderer_.render(camera, bodies);
     std::vector<std::byte> bytes;
     rendering::measure(renderer_.depth(), DepthImage::Format::kMillimetres16,
@@ -177,11 +197,12 @@ class WitnessedCell {
   DrawnErrors exact_;
   Vec3 camera_shift_ = Vec3::Zero();
   std::vector<rendering::PlacedBody> others_;
+  std::set<std::uint32_t> imagined_;
   const ConvexBody* held_ = nullptr;
   std::uint32_t holder_ = 0;
   Pose object_from_held_;
   std::vector<Pose> poses_;
-  std::int64_t now_ = camera::kStart;
+  std::int64_t now_ = camera::kStart, period_ns_ = camera::kFrame;
   std::uint64_t frame_ = 0;
 };
 
