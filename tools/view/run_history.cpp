@@ -163,11 +163,11 @@ std::string RunHistory::window(std::int64_t end_ns, std::int64_t width_ns, const
     columns.emplace_back(std::to_string(pair),
                          known == columns_.end() ? kNotPublished : known->second);
   }
-  nlohmann::json all = {{"s", nlohmann::json::array()},       {"distance", nlohmann::json::array()},
-                        {"lower", nlohmann::json::array()},   {"tick", nlohmann::json::array()},
-                        {"scaling", nlohmann::json::array()}, {"pairs", nlohmann::json::object()},
-                        {"speeds", nlohmann::json::object()},
-                        {"residuals", residuals(end_ns - width_ns, end_ns)}};
+  nlohmann::json all = {
+      {"s", nlohmann::json::array()},       {"distance", nlohmann::json::array()},
+      {"lower", nlohmann::json::array()},   {"tick", nlohmann::json::array()},
+      {"scaling", nlohmann::json::array()}, {"pairs", nlohmann::json::object()},
+      {"speeds", nlohmann::json::object()}, {"residuals", residuals(end_ns - width_ns, end_ns)}};
   const auto first =
       std::ranges::upper_bound(run_.heads(), end_ns - width_ns, {}, &Piece::begin_ns);
   const auto last = std::ranges::upper_bound(run_.heads(), end_ns, {}, &Piece::begin_ns);

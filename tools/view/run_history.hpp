@@ -54,8 +54,9 @@ class RunHistory {
   // The last `width_ns` up to `end_ns`, as JSON: {"s": [...], "distance": [...], "lower": [...],
   // "tick": [...], "scaling": [...], "pairs": {"ID": [...]}, "speeds": {"ID": [...]}, "residuals":
   // {"CAMERA: LINK": [[s, m], ...]}}. Units are s after the first report, m, us and m/s. null: not
-  // known. Residuals are the medians of the links that are seen farthest from their places. The pairs are those of `scene`, also
-  // where another scene was in force; values of pairs that are not published are null.
+  // known. Residuals are the medians of the links that are seen farthest from their places. The
+  // pairs are those of `scene`, also where another scene was in force; values of pairs that are not
+  // published are null.
   [[nodiscard]] std::string window(std::int64_t end_ns, std::int64_t width_ns, const Scene& scene,
                                    std::span<const std::uint32_t> pairs) const;
 

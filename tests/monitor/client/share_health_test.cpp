@@ -44,9 +44,14 @@ TEST(ShareHealth, AWitnessSaysWhatTheShareThatReadsItSaw) {
   std::vector<Sample<clearance_msg_Health>> of(2);
   const auto add = [&](std::uint32_t share, const char* link, std::uint32_t agreeing,
                        std::uint32_t through, double p50) {
-    of[share]->witnesses._buffer[of[share]->witnesses._length++] = {
-        dds_string_dup("eye"), dds_string_dup("arm"), dds_string_dup(link), agreeing, through,
-        share == 1,            p50,                   2 * p50};
+    of[share]->witnesses._buffer[of[share]->witnesses._length++] = {dds_string_dup("eye"),
+                                                                    dds_string_dup("arm"),
+                                                                    dds_string_dup(link),
+                                                                    agreeing,
+                                                                    through,
+                                                                    share == 1,
+                                                                    p50,
+                                                                    2 * p50};
   };
   for (std::uint32_t share = 0; share < 2; ++share) {
     of[share]->recording = dds_string_dup("");
