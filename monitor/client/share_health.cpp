@@ -124,9 +124,10 @@ void join_notes(Views views, Message& out) {
 
 // A share that has no sensor's pairs does not read it: the picture with the most rays counts.
 void join_witnesses(Views views, Message& out) {
-  std::map<std::pair<std::string, std::string>, clearance_msg_WitnessHealth> witnesses;
+  std::map<std::array<std::string, 3>, clearance_msg_WitnessHealth> witnesses;
   for_all(views, &Message::witnesses, [&](const clearance_msg_WitnessHealth& witness) {
-    const auto [at, is_new] = witnesses.emplace(std::pair(witness.sensor, witness.robot), witness);
+    const auto [at, is_new] =
+        witnesses.try_emplace({witness.sensor, witness.robot, witness.link}, witness);
     if (is_new) return;
     clearance_msg_WitnessHealth& to = at->second;
     const bool is_denied = to.denied || witness.denied;
@@ -140,6 +141,7 @@ void join_witnesses(Views views, Message& out) {
     to = witness;
     to.sensor = dds_string_dup(witness.sensor);
     to.robot = dds_string_dup(witness.robot);
+    to.link = dds_string_dup(witness.link);
   }
 }
 

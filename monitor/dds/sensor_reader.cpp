@@ -10,6 +10,7 @@
 #include "monitor/app/log_line.hpp"
 #include "monitor/inputs/elapsed.hpp"
 #include "monitor/loop/realtime.hpp"
+#include "monitor/sensors/attach_command.hpp"
 
 namespace clearance {
 namespace {
@@ -43,6 +44,7 @@ SensorReader::SensorReader(const Cell& cell, Participant& participant)
       silence_said_(cell.scene.sensors.size()),
       is_shell_thick_(cell.scene.sensors.size()),
       is_denied_(cell.scene.sensors.size(), std::vector<bool>(cell.scene.robots.size())),
+      carries_(cell.scene.sensors.size()),
       last_(cell.scene.sensors.size()),
       names_(cell.scene),
       sent_(cell.scene.sensors.size()) {
@@ -82,6 +84,7 @@ void SensorReader::change(const Cell& cell) {
   static_cast<void>(ids_.sources().add_named(named_sources(cell.scene)));
   last_.assign(cell.scene.sensors.size(), {});
   names_ = FrameNames(cell.scene);
+  carries_.assign(cell.scene.sensors.size(), {});  // what is attached now is no news
   sent_.assign(cell.scene.sensors.size(), {});
   sensors_ = std::make_unique<Sensors>(cell, *sensors_, ids_.sources());
   intake_.change(cell);
@@ -248,6 +251,7 @@ void SensorReader::log_news() {
   tell_of_silence();
   tell_of_shells();
   tell_of_robots();
+  tell_of_payloads();
 }
 
 void SensorReader::tell_of_silence() {
@@ -292,6 +296,30 @@ void SensorReader::tell_of_robots() {
                  rays.through + rays.agreeing);
       } else {
         log_line(lines::kRobotThere, sensor.name, robot);
+      }
+    }
+  }
+}
+
+// Each time that a hand carries something which is no body of the cell, and when it is gone.
+void SensorReader::tell_of_payloads() {
+  for (std::uint32_t i = 0; i < carries_.size(); ++i) {
+    const Sensor& sensor = cell_->scene.sensors[i];
+    if (!sensor.is_witness) continue;
+    const SensorStatus status = sensors_->status(i);
+    carries_[i].resize(status.payloads.size());
+    for (std::size_t k = 0; k < status.payloads.size(); ++k) {
+      const UnknownPayload& payload = status.payloads[k];
+      if (payload.is_held == carries_[i][k]) continue;
+      carries_[i][k] = payload.is_held;
+      const std::string& link = cell_->scene.robots[payload.robot].links[payload.link].name;
+      const auto& [at, size] = payload.box;
+      if (payload.is_held) {
+        log_line(lines::kCarriesSomething, sensor.name, link,
+                 1e-9 * static_cast<double>(status.stamp_ns - payload.since_ns), size.x(), size.y(),
+                 size.z(), at.x(), at.y(), at.z(), attach_command(*cell_, payload));
+      } else {
+        log_line(lines::kCarriesNothing, sensor.name, link);
       }
     }
   }

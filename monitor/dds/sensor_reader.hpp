@@ -79,6 +79,7 @@ class SensorReader {
   void tell_of_silence();
   void tell_of_shells();
   void tell_of_robots();
+  void tell_of_payloads();
   [[nodiscard]] std::string why_silent(const Sensor& sensor, const SensorStatus& status) const;
 
   const Cell* cell_;
@@ -106,6 +107,7 @@ class SensorReader {
   std::vector<bool> silence_said_;            // by sensor
   std::vector<bool> is_shell_thick_;          // by sensor, as it was said
   std::vector<std::vector<bool>> is_denied_;  // by sensor and robot, as it was said
+  std::vector<std::vector<bool>> carries_;    // by sensor and SensorStatus::payloads, likewise
   // The last frame of a sensor, whose cloud stays as it is while mutex_ is held; and its copy.
   struct Last {
     SensorFrame frame;

@@ -175,6 +175,14 @@ inline constexpr LogLine<Text, Text, std::uint32_t, std::uint32_t> kRobotNotTher
     "the sensor is not where it should be. What hangs on the robot is unknown"};
 inline constexpr LogLine<Text, Text> kRobotThere{"robot-there", kInfo,
                                                  "sensor {} sees robot '{}' where its joints say"};
+inline constexpr LogLine<Text, Text, double, double, double, double, double, double, double, Text>
+    kCarriesSomething{
+        "carries-something", kWarn,
+        "sensor {} sees that '{}' carries something that is no body of the cell, since {:.1f} s: a "
+        "box of {:.3f} x {:.3f} x {:.3f} m around ({:.3f}, {:.3f}, {:.3f}) in the frame of the "
+        "link. It stays an obstacle. This attaches it: {}"};
+inline constexpr LogLine<Text, Text> kCarriesNothing{
+    "carries-nothing", kInfo, "sensor {} sees that '{}' does not carry that thing any more"};
 
 // ---- Joints
 

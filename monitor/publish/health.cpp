@@ -63,25 +63,42 @@ void add_refused_frames(const Scene& scene, const std::vector<SensorStatus>& sen
   }
 }
 
-// The robots that a sensor is asked about; what others carry is not looked at.
+void add_witness(const Sensor& sensor, const std::string& robot, const std::string& link,
+                 const RaysMet& rays, bool denied, clearance_msg_Health& out) {
+  if (out.witnesses._length == out.witnesses._maximum) return;
+  clearance_msg_WitnessHealth& entry = out.witnesses._buffer[out.witnesses._length++];
+  entry.sensor = dds_string_dup(sensor.name.c_str());
+  entry.robot = dds_string_dup(robot.c_str());
+  entry.link = dds_string_dup(link.c_str());
+  entry.agreeing = rays.agreeing;
+  entry.through = rays.through;
+  entry.denied = denied;
+  entry.residual_p50 = rays.residual_p50;
+  entry.residual_p90 = rays.residual_p90;
+}
+
+// The robots that a sensor is asked about, each with the links that enough rays meet; what others
+// carry is not looked at.
 void fill_witnesses(const Scene& scene, const std::vector<SensorStatus>& sensors,
                     clearance_msg_Health& out) {
   std::size_t most = 0;
-  for (const SensorStatus& sensor : sensors) most += sensor.robots.size();
+  for (const SensorStatus& sensor : sensors)
+    for (const RobotSeen& robot : sensor.robots) most += 1 + robot.rays.links.size();
   reserve_sequence(out.witnesses, std::min<std::size_t>(most, 4096));
   for (std::size_t i = 0; i < std::min(scene.sensors.size(), sensors.size()); ++i) {
     const std::vector<RobotSeen>& robots = sensors[i].robots;
     for (std::size_t r = 0; r < std::min(scene.robots.size(), robots.size()); ++r) {
-      if (scene.robots[r].is_attached) continue;
-      if (out.witnesses._length == out.witnesses._maximum) return;
-      clearance_msg_WitnessHealth& entry = out.witnesses._buffer[out.witnesses._length++];
-      entry.sensor = dds_string_dup(scene.sensors[i].name.c_str());
-      entry.robot = dds_string_dup(scene.robots[r].name.c_str());
-      entry.agreeing = robots[r].rays.agreeing;
-      entry.through = robots[r].rays.through;
-      entry.denied = robots[r].count.denied;
-      entry.residual_p50 = robots[r].rays.residual_p50;
-      entry.residual_p90 = robots[r].rays.residual_p90;
+      const Robot& robot = scene.robots[r];
+      const RaysOfRobot& rays = robots[r].rays;
+      if (robot.is_attached) continue;
+      const auto add = [&](const std::string& link, const RaysMet& met) {
+        add_witness(scene.sensors[i], robot.name, link, met, robots[r].count.denied, out);
+      };
+      add("", rays);
+      for (std::size_t l = 0; l < std::min(robot.links.size(), rays.links.size()); ++l) {
+        if (rays.links[l].agreeing + rays.links[l].through >= Witness::kLeastRays)
+          add(robot.links[l].name, rays.links[l]);
+      }
     }
   }
 }

@@ -109,6 +109,10 @@ FrameFault Sensors::build_at(State& state, const Waiting& frame, const PastPose&
   }
   leave_out(state, frame, place, cloud);
   if (cloud.size() == 0) return FrameFault::kNothingSeen;
+  if (state.payloads) {
+    state.payloads->look(*cloud.depth(), place, postures_, state.robots, frame.stamp_ns);
+    state.status.payloads = state.payloads->all();
+  }
   out.robots = state.robots;
   for (std::size_t r = 0; r < state.status.robots.size(); ++r) {
     const bool counts = r < kMostRobotsSeen;
@@ -195,6 +199,7 @@ FrameFault Sensors::fill(State& state, const Waiting& frame, const PastPose& pla
     }
     if (sensor.is_witness)
       state.robots = witness_.judge(sensor, frame.camera, *frame.cloud->image(), place, postures_);
+    if (state.payloads) state.payloads->note(*depth, frame.camera, place);
     own_image_.leave_out(sensor, frame.cloud->is_along_ray(sensor), place, postures_, cloud, body_);
     return FrameFault::kNoFault;
   }

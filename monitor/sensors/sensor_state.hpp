@@ -59,7 +59,8 @@ struct Sensors::State {
   std::size_t own_elements = 0;            // of bodies in the last picture that was new
   std::optional<Persistence> persistence;  // none: all elements stay
   std::array<std::uint64_t, kFrameFaults> not_built{};
-  RobotsSeen robots;  // in the last picture
+  RobotsSeen robots;                        // in the last picture
+  std::optional<UnknownPayloads> payloads;  // of a witness
   SensorStatus status;
 };
 

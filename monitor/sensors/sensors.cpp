@@ -36,8 +36,9 @@ Sensors::Sensors(const Cell& cell, const SensorsOptions& options, const SourceNu
     states_.push_back(
         std::make_unique<State>(i, scene.sensors[i], scene.objects[scene.sensors[i].object]));
     states_.back()->status.own.resize(own_image_.bodies());
-    if (states_.back()->sensor.is_witness)
-      states_.back()->status.robots.resize(cell.scene.robots.size());
+    if (!scene.sensors[i].is_witness) continue;
+    states_.back()->status.robots.resize(scene.robots.size());
+    states_.back()->payloads.emplace(scene, scene.sensors[i]);
   }
 }
 Sensors::Sensors(const Cell& cell, Sensors& before, const SourceNumbers& numbers)

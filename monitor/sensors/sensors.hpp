@@ -19,6 +19,7 @@
 #include "monitor/sensors/mounts.hpp"
 #include "monitor/sensors/organised_points.hpp"
 #include "monitor/sensors/own_image.hpp"
+#include "monitor/sensors/unknown_payloads.hpp"
 #include "monitor/sensors/witness.hpp"
 #include "monitor/tick/monitor.hpp"
 
@@ -80,7 +81,8 @@ struct SensorStatus {
   // Messages that were used (kNoFault) or refused, by cause.
   std::array<std::uint64_t, kFrameFaults> counts{};
   std::vector<OwnImageStatus> own;
-  std::vector<RobotSeen> robots;  // as Scene::robots; empty: the sensor is no witness
+  std::vector<RobotSeen> robots;         // as Scene::robots; empty: the sensor is no witness
+  std::vector<UnknownPayload> payloads;  // likewise, by link that may hold something
   // Why the last frame was refused as kRobotElsewhere, with frame and difference; empty: it was
   // not.
   std::string robot_elsewhere;

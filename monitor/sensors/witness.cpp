@@ -133,6 +133,9 @@ double depth_at(const DepthImage& image, std::uint32_t column, std::uint32_t row
 Witness::Witness(const Scene& scene)
     : scene_(scene), errors_(scene), met_(kRays), rays_(scene.robots.size()) {
   residuals_.reserve(kRays);
+  measured_.reserve(kRays);
+  for (std::size_t r = 0; r < rays_.size(); ++r)
+    rays_[r].links.resize(scene.robots[r].links.size());
   std::size_t parts = 0;
   for (const Object& object : scene.objects) parts += object.parts.size();
   placed_.reserve(parts);
@@ -182,7 +185,7 @@ void Witness::place_parts(std::uint32_t r, const Sensor& sensor, const PinholeCa
           rounded_up(place.error(distance) + past.error(reach) + object.mesh_error +
                      object.shape_error + (errors_.largest(i, sensor.object) - beyond));
       const Pixels pixels = pixels_around(camera_from_part.translation, radius + error, camera);
-      if (!pixels.is_empty()) placed_.push_back({&part, camera_from_part, error, pixels});
+      if (!pixels.is_empty()) placed_.push_back({&part, link, camera_from_part, error, pixels});
     }
   }
 }
@@ -230,6 +233,7 @@ void Witness::meet(const Placed& placed, const PinholeCamera& camera) noexcept {
       if (stated.any() && stated.from < met.stated) {
         met.stated = static_cast<float>(stated.from);
         met.slope = static_cast<float>(stated.slope);
+        met.link = placed.link;
       }
       const Span shrunk = inside(shape, origin, along, -placed.error);
       if (shrunk.any()) met.surest = std::min(met.surest, static_cast<float>(shrunk.from));
@@ -237,9 +241,8 @@ void Witness::meet(const Placed& placed, const PinholeCamera& camera) noexcept {
   }
 }
 
-RaysOfRobot Witness::count(const Sensor& sensor, const DepthImage& image) noexcept {
+void Witness::count(const Sensor& sensor, const DepthImage& image, RaysOfRobot& rays) noexcept {
   const DepthError error{sensor.error_constant, sensor.error_quadratic};
-  RaysOfRobot rays;
   residuals_.clear();
   for (std::uint32_t row = 0; row < grid_.rows; ++row) {
     for (std::uint32_t column = 0; column < grid_.columns; ++column) {
@@ -250,30 +253,41 @@ RaysOfRobot Witness::count(const Sensor& sensor, const DepthImage& image) noexce
           depth_at(image, grid_.left + column * grid_.step, grid_.top + row * grid_.step);
       if (!(depth >= sensor.least_depth && depth <= sensor.greatest_depth)) continue;
       const double by = error.at(depth);
+      RaysMet& of_link = rays.links[met.link];
       if (depth > surest + by) {
         ++rays.through;
+        ++of_link.through;
       } else if (depth >= met.nearest - by) {
         ++rays.agreeing;
+        ++of_link.agreeing;
         if (met.slope > 0.0F)
-          residuals_.push_back(static_cast<float>((depth - met.stated) * met.slope));
+          residuals_.push_back({static_cast<float>((depth - met.stated) * met.slope), met.link});
       }
     }
   }
+  measured_.clear();
+  for (const Residual& each : residuals_) measured_.push_back(each.value);
   measure(rays);
-  return rays;
+  for (std::uint32_t link = 0; link < rays.links.size(); ++link) {
+    if (rays.links[link].agreeing < kLeastRays) continue;
+    measured_.clear();
+    for (const Residual& each : residuals_)
+      if (each.link == link) measured_.push_back(each.value);
+    if (measured_.size() >= kLeastRays) measure(rays.links[link]);
+  }
 }
 
 // Selects quantiles of the residuals, which are among them: no sum depends on an order.
-void Witness::measure(RaysOfRobot& rays) noexcept {
-  if (residuals_.empty()) return;
+void Witness::measure(RaysMet& rays) noexcept {
+  if (measured_.empty()) return;
   const auto at = [&](std::size_t rank) {
-    const auto place = residuals_.begin() + static_cast<std::ptrdiff_t>(rank);
-    std::nth_element(residuals_.begin(), place, residuals_.end());
+    const auto place = measured_.begin() + static_cast<std::ptrdiff_t>(rank);
+    std::nth_element(measured_.begin(), place, measured_.end());
     return static_cast<double>(*place);
   };
-  const std::size_t last = residuals_.size() - 1;
+  const std::size_t last = measured_.size() - 1;
   rays.residual_p50 = at(last / 2);
-  for (float& residual : residuals_) residual = std::abs(residual);
+  for (float& residual : measured_) residual = std::abs(residual);
   rays.residual_p90 = at(last * 9 / 10);
 }
 
@@ -283,13 +297,14 @@ RobotsSeen Witness::judge(const Sensor& sensor, const PinholeCamera& camera,
   RobotsSeen seen;
   const auto robots = std::min<std::size_t>(scene_.robots.size(), kMostRobotsSeen);
   for (std::uint32_t r = 0; r < robots; ++r) {
-    rays_[r] = {};
+    static_cast<RaysMet&>(rays_[r]) = {};
+    std::ranges::fill(rays_[r].links, RaysMet{});
     if (scene_.robots[r].is_attached) continue;
     place_parts(r, sensor, camera, place, postures);
     if (placed_.empty()) continue;
     spread_rays();
     for (const Placed& each : placed_) meet(each, camera);
-    rays_[r] = count(sensor, image);
+    count(sensor, image, rays_[r]);
     const std::uint32_t met = rays_[r].agreeing + rays_[r].through;
     if (met < kLeastRays) continue;
     const bool is_through = rays_[r].through > sensor.witness_share * met;

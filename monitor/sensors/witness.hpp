@@ -18,8 +18,8 @@
 
 namespace clearance {
 
-// The rays of a picture that met a robot.
-struct RaysOfRobot {
+// The rays of a picture that met a robot, or one of its links.
+struct RaysMet {
   std::uint32_t agreeing = 0;  // depth as the model allows
   std::uint32_t through = 0;   // depth behind where the robot must be
   // Of the rays that agree, m: how far the measured point is behind the surface that the joints
@@ -29,11 +29,16 @@ struct RaysOfRobot {
   double residual_p90 = residual_p50;
 };
 
+// A ray is of the link whose stated surface it meets first.
+struct RaysOfRobot : RaysMet {
+  std::vector<RaysMet> links;  // as Robot::links
+};
+
 class Witness {
  public:
   // Rays for a robot in a picture, at most; they are spread evenly over where it may be.
   static constexpr std::uint32_t kRays = 4096;
-  // Fewer rays that meet a robot say nothing of it.
+  // Fewer rays that meet a robot or a link say nothing of it.
   static constexpr std::uint32_t kLeastRays = 24;
 
   // The scene must outlive it.
@@ -55,6 +60,7 @@ class Witness {
   // A part that may be in the picture. `error`: no point of its true surface is farther from it, m.
   struct Placed {
     const Part* part = nullptr;
+    std::uint32_t link = 0;
     RelativePose camera_from_part;
     double error = 0.0;
     Pixels pixels;
@@ -68,6 +74,12 @@ class Witness {
   // surface, along its normal; 0: the surface is not known exactly.
   struct Ray {
     float surest = kNowhere, nearest = kNowhere, stated = kNowhere, slope = 0.0F;
+    std::uint32_t link = 0;  // whose stated body it is
+  };
+  // Of a ray that agrees, m.
+  struct Residual {
+    float value = 0.0F;
+    std::uint32_t link = 0;
   };
   static constexpr float kNowhere = std::numeric_limits<float>::infinity();
   [[nodiscard]] static Pixels pixels_around(const Vec3& centre, double radius,
@@ -76,16 +88,17 @@ class Witness {
                    const PastPose& place, const PostureHistory& postures) noexcept;
   void spread_rays() noexcept;
   void meet(const Placed& placed, const PinholeCamera& camera) noexcept;
-  [[nodiscard]] RaysOfRobot count(const Sensor& sensor, const DepthImage& image) noexcept;
-  void measure(RaysOfRobot& rays) noexcept;
+  void count(const Sensor& sensor, const DepthImage& image, RaysOfRobot& rays) noexcept;
+  void measure(RaysMet& rays) noexcept;
 
   const Scene& scene_;
   StatedErrors errors_;
   std::vector<Placed> placed_;  // of the robot that is looked at
   Grid grid_;
-  std::vector<Ray> met_;           // of the robot that is looked at
-  std::vector<float> residuals_;   // of that robot's rays that agree, m
-  std::vector<RaysOfRobot> rays_;  // by robot
+  std::vector<Ray> met_;             // of the robot that is looked at
+  std::vector<Residual> residuals_;  // of that robot
+  std::vector<float> measured_;      // the residuals of one link, or of all
+  std::vector<RaysOfRobot> rays_;    // by robot
 };
 
 }  // namespace clearance

@@ -29,7 +29,8 @@ class DaemonWitness : public DaemonCameras {
           const bool on_upper = std::abs(on_arm.x()) < 0.4,
                      on_lower = std::abs(on_arm.x() - 1) < 0.42;
           if (std::abs(on_arm.y()) < 0.05 && (on_upper || on_lower))
-            depth[v * image.width + u] = static_cast<float>(1.95 + farther);
+            depth[v * image.width + u] =
+                static_cast<float>(1.95 + farther + (on_lower ? lower_farther : 0.0));
         }
       }
     };
@@ -50,13 +51,13 @@ class DaemonWitness : public DaemonCameras {
       dds_sample_info_t info{};
       while (dds_take(reader, &pointer, &info, 1, 1) == 1) {
       }
-      return health->witnesses._length == 1 && so(health->witnesses._buffer[0]);
+      return health->witnesses._length > 0 && so(health->witnesses._buffer[0]);
     });
   }
 
   RosCamera camera{client, {}};
   RosJoints joints{client};
-  double farther = 0.0;  // m
+  double farther = 0.0, lower_farther = 0.0;  // m
   Sample<clearance_msg_Health> health;
   dds_entity_t reader = client.reader(TopicKind::kHealth, Topics{}.health);
 };
@@ -75,6 +76,24 @@ TEST_F(DaemonWitness, HealthSaysHowFarARobotIsSeenFromWhereItsJointsSay) {
     EXPECT_FALSE(of.denied);
     EXPECT_NEAR(of.residual_p90, std::abs(by), 1e-6);
   }
+}
+
+TEST_F(DaemonWitness, HealthAndWatchNameTheLinkThatIsFarthestFromItsPlace) {
+  ChildProcess watch(kWatch, with({"--plain"}, dds_arguments(dds)));
+  lower_farther = 0.0013;
+  const auto of_lower = [&]() -> const clearance_msg_WitnessHealth* {
+    for (std::uint32_t i = 0; i < health->witnesses._length; ++i)
+      if (health->witnesses._buffer[i].link == std::string("lower"))
+        return &health->witnesses._buffer[i];
+    return nullptr;
+  };
+  ASSERT_TRUE(sees(0.0003, [&](const clearance_msg_WitnessHealth&) {
+    return of_lower() != nullptr && std::abs(of_lower()->residual_p50 - 0.0016) < 1e-6;
+  })) << daemon->output();
+  EXPECT_STREQ(of_lower()->robot, "arm");
+  EXPECT_LT(of_lower()->agreeing, health->witnesses._buffer[0].agreeing) << "those of the arm";
+  const std::string most = "most at lower: 1.6 mm";
+  ASSERT_TRUE(sees(0.0003, [&](const auto&) { return watch.wrote(most); })) << watch.output();
 }
 
 TEST_F(DaemonWitness, HealthSaysThatARobotIsNotThere) {

@@ -1,5 +1,7 @@
 #include "tools/view/run_history.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <cmath>
 #include <nlohmann/json.hpp>
@@ -91,6 +93,13 @@ void RunHistory::take(const clearance_msg_Separation& separation, std::int64_t l
   run_.add(piece);
 }
 
+void RunHistory::take(const clearance_msg_Health& health, std::int64_t log_ns) {
+  for (const auto& each : std::span(health.witnesses._buffer, health.witnesses._length)) {
+    if (*each.link == '\0' || std::isnan(each.residual_p50)) continue;
+    medians_[fmt::format("{}: {}", each.sensor, each.link)].emplace_back(log_ns, each.residual_p50);
+  }
+}
+
 Piece RunHistory::least() const {
   Piece least;
   for (const Piece& piece : run_.heads()) merge(piece, least);
@@ -124,6 +133,27 @@ RunHistory::Extremes RunHistory::extremes_of(std::uint32_t column, std::size_t f
   return extremes;
 }
 
+nlohmann::json RunHistory::residuals(std::int64_t from_ns, std::int64_t to_ns) const {
+  std::vector<std::pair<double, const std::string*>> largest;
+  const auto is_within = [&](std::int64_t ns) { return ns > from_ns && ns <= to_ns; };
+  for (const auto& [name, curve] : medians_) {
+    double most = -1.0;
+    for (const auto& [ns, median] : curve)
+      if (is_within(ns)) most = std::max(most, std::abs(median));
+    if (most >= 0.0) largest.emplace_back(-most, &name);
+  }
+  std::ranges::stable_sort(largest, {}, [](const auto& each) { return each.first; });
+  nlohmann::json all = nlohmann::json::object();
+  for (std::size_t i = 0; i < std::min(largest.size(), kMostResiduals); ++i) {
+    for (const auto& [ns, median] : medians_.at(*largest[i].second)) {
+      if (!is_within(ns)) continue;
+      const double s = 1e-9 * static_cast<double>(ns - run_.heads().front().begin_ns);
+      all[*largest[i].second].push_back({s, median});
+    }
+  }
+  return all;
+}
+
 std::string RunHistory::window(std::int64_t end_ns, std::int64_t width_ns, const Scene& scene,
                                std::span<const std::uint32_t> pairs) const {
   std::vector<std::pair<std::string, std::uint32_t>> columns;  // by the pair's id, as text
@@ -133,10 +163,11 @@ std::string RunHistory::window(std::int64_t end_ns, std::int64_t width_ns, const
     columns.emplace_back(std::to_string(pair),
                          known == columns_.end() ? kNotPublished : known->second);
   }
-  nlohmann::json all = {{"s", nlohmann::json::array()},       {"distance", nlohmann::json::array()},
-                        {"lower", nlohmann::json::array()},   {"tick", nlohmann::json::array()},
-                        {"scaling", nlohmann::json::array()}, {"pairs", nlohmann::json::object()},
-                        {"speeds", nlohmann::json::object()}};
+  nlohmann::json all = {
+      {"s", nlohmann::json::array()},       {"distance", nlohmann::json::array()},
+      {"lower", nlohmann::json::array()},   {"tick", nlohmann::json::array()},
+      {"scaling", nlohmann::json::array()}, {"pairs", nlohmann::json::object()},
+      {"speeds", nlohmann::json::object()}, {"residuals", residuals(end_ns - width_ns, end_ns)}};
   const auto first =
       std::ranges::upper_bound(run_.heads(), end_ns - width_ns, {}, &Piece::begin_ns);
   const auto last = std::ranges::upper_bound(run_.heads(), end_ns, {}, &Piece::begin_ns);

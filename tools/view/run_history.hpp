@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <map>
+#include <nlohmann/json_fwd.hpp>
 #include <span>
 #include <string>
 #include <utility>
@@ -44,15 +45,18 @@ class RunHistory {
   // Takes reports in the order of their log times.
   void take(const clearance_msg_Distances& report, std::int64_t log_ns);
   void take(const clearance_msg_Separation& separation, std::int64_t log_ns);
+  void take(const clearance_msg_Health& health, std::int64_t log_ns);
 
   // The least of the whole run; NaN when there is none.
   [[nodiscard]] Piece least() const;
   // The run in at most `most` stretches of equal length, without those that have no report.
   [[nodiscard]] std::vector<Piece> pieces(std::size_t most) const;
   // The last `width_ns` up to `end_ns`, as JSON: {"s": [...], "distance": [...], "lower": [...],
-  // "tick": [...], "scaling": [...], "pairs": {"ID": [...]}, "speeds": {"ID": [...]}}. Units are s
-  // after the first report, m, us and m/s. null: not known. The pairs are those of `scene`, also
-  // where another scene was in force; values of pairs that are not published are null.
+  // "tick": [...], "scaling": [...], "pairs": {"ID": [...]}, "speeds": {"ID": [...]}, "residuals":
+  // {"CAMERA: LINK": [[s, m], ...]}}. Units are s after the first report, m, us and m/s. null: not
+  // known. Residuals are the medians of the links that are seen farthest from their places. The
+  // pairs are those of `scene`, also where another scene was in force; values of pairs that are not
+  // published are null.
   [[nodiscard]] std::string window(std::int64_t end_ns, std::int64_t width_ns, const Scene& scene,
                                    std::span<const std::uint32_t> pairs) const;
 
@@ -64,10 +68,16 @@ class RunHistory {
   [[nodiscard]] Extremes extremes_of(std::uint32_t column, std::size_t first,
                                      std::size_t last) const;
 
+  // The JSON of the residuals from one log time, exclusive, to another one.
+  [[nodiscard]] nlohmann::json residuals(std::int64_t from_ns, std::int64_t to_ns) const;
+
+  static constexpr std::size_t kMostResiduals = 6;  // curves
   static constexpr std::uint32_t kNotPublished = std::numeric_limits<std::uint32_t>::max();
   std::map<Names, std::uint32_t> columns_;
   std::vector<std::uint32_t> column_of_;  // by pair of the present scene
   Stretches<Piece, Extremes> run_;        // a column per pair that any scene publishes
+  // Log time and median, by the names of a camera and a link.
+  std::map<std::string, std::vector<std::pair<std::int64_t, double>>> medians_;
 };
 
 // Join two neighbouring stretches of time, or a pair's values in them; Stretches calls these.

@@ -128,6 +128,7 @@ void Scan::take_health(std::int64_t log_ns) {
                     health_->overruns - *overruns_, health_->tick_second_max_us));
   }
   overruns_ = health_->overruns;
+  if (!found_.reports.empty()) found_.history.take(*health_, log_ns);
 }
 
 void Scan::add_least() {

@@ -10,7 +10,8 @@
 
 namespace clearance::watch {
 
-// One text for each witness and robot, as the last health has them. Empty if there is no witness.
+// One text for each witness and robot, with the link that is seen farthest from its place, as the
+// last health has them. Empty if there is no witness.
 [[nodiscard]] std::vector<std::string> witness_texts(const Feed& feed);
 
 // The same as lines of the screen; a robot that is not where its joints say stands out.

@@ -24,7 +24,7 @@ std::string content(const std::string& file) {
 // a rate.
 template <class Argument>
 Argument sample(std::size_t place) {
-  static constexpr std::string_view kNames = "ABCDEFGH";
+  static constexpr std::string_view kNames = "ABCDEFGHIJ";
   if constexpr (std::is_same_v<Argument, std::string_view>)
     return kNames.substr(place, 1);
   else

@@ -42,20 +42,28 @@ TEST(ShareHealth, AnInputIsAsOldAsTheShareThatKnowsLeastOfItSays) {
 // Only the second share reads the sensor.
 TEST(ShareHealth, AWitnessSaysWhatTheShareThatReadsItSaw) {
   std::vector<Sample<clearance_msg_Health>> of(2);
-  for (std::uint32_t share = 0; share < 2; ++share) {
-    of[share]->recording = dds_string_dup("");
-    reserve_sequence(of[share]->witnesses, 1);
+  const auto add = [&](std::uint32_t share, const char* link, std::uint32_t agreeing,
+                       std::uint32_t through, double p50) {
     of[share]->witnesses._buffer[of[share]->witnesses._length++] = {dds_string_dup("eye"),
                                                                     dds_string_dup("arm"),
-                                                                    90 * share,
-                                                                    10 * share,
+                                                                    dds_string_dup(link),
+                                                                    agreeing,
+                                                                    through,
                                                                     share == 1,
-                                                                    0.25,
-                                                                    0.5};
+                                                                    p50,
+                                                                    2 * p50};
+  };
+  for (std::uint32_t share = 0; share < 2; ++share) {
+    of[share]->recording = dds_string_dup("");
+    reserve_sequence(of[share]->witnesses, 2);
+    add(share, "", 90 * share, 10 * share, 0.25);
   }
+  add(1, "wrist", 30, 0, 0.75);
   Sample<clearance_msg_Health> joined;
   join_health(std::vector<const clearance_msg_Health*>{&*of[0], &*of[1]}, {}, *joined);
-  ASSERT_EQ(joined->witnesses._length, 1u);
+  ASSERT_EQ(joined->witnesses._length, 2u);
+  EXPECT_STREQ("wrist", joined->witnesses._buffer[1].link);
+  EXPECT_EQ(joined->witnesses._buffer[1].residual_p50, 0.75);
   const clearance_msg_WitnessHealth& witness = joined->witnesses._buffer[0];
   EXPECT_STREQ("arm", witness.robot);
   EXPECT_EQ(witness.agreeing, 90u);

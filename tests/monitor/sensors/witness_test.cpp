@@ -2,177 +2,20 @@
 // is off its model, with noise within the stated bound.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
-#include <cstring>
-#include <fstream>
-#include <iterator>
+#include <initializer_list>
 #include <string>
 #include <vector>
 
-#include "monitor/sensors/sensors.hpp"
-#include "monitor/tick/monitor.hpp"
-#include "tests/config/cells.hpp"
-#include "tests/monitor/intake/camera_texts.hpp"
-#include "tests/monitor/tick/scara_cell.hpp"
-#include "tests/monitor/tick/small_cells.hpp"
-#include "tests/monitor/tick/true_bodies.hpp"
-#include "tests/shared/places.hpp"
-#include "tools/rendering/depth_renderer.hpp"
-#include "tools/rendering/measured_depth.hpp"
+#include "tests/monitor/sensors/witnessed_cell.hpp"
 
 namespace clearance {
 namespace {
 
-constexpr std::uint32_t kEyeColumns = 320, kEyeRows = 240;
-constexpr double kEyeFocal = 260.0;
-
-const std::string kWitnessEye =
-    "sensors:\n  - {name: eye, depth_image: /cam/image, size: [320, 240], depth_error: {constant: "
-    "0.004, quadratic: 0.001}, range: [0.3, 6], witness: true, mount: {pose: {xyz: [1.9, 0, 1.5], "
-    "rpy: [-1.8, 0, 1.5708]}}}\n";
-
-// The shipped cell of two arms, with a camera that looks at them, and an obstacle pair for it.
-Cell two_arms_and_eye(const std::string& errors = "") {
-  const std::string file = test::places::sources() + "/config/cells/seven_joint_arms.yaml";
-  std::ifstream in(file);
-  std::string text{std::istreambuf_iterator<char>(in), {}};
-  const std::string pairs = "pairs:\n";
-  text.insert(text.find(pairs) + pairs.size(),
-              "  - between: [left, eye]\n  - between: [right, eye]\n");
-  return read_good(text + kWitnessEye + errors, file);
-}
-
-// A cell, the machine behind it, and its camera.
-class WitnessedCell {
- public:
-  explicit WitnessedCell(Cell cell, std::uint64_t seed = 1)
-      : cell_(std::move(cell)),
-        sensors_(cell_, SensorsOptions{.is_log = false}),
-        monitor_(cell_.scene),
-        random_(seed),
-        renderer_({.width = kEyeColumns,
-                   .height = kEyeRows,
-                   .fx = kEyeFocal,
-                   .fy = kEyeFocal,
-                   .cx = 159.5,
-                   .cy = 119.5}),
-        off_(cell_.scene.variables.size(), 0.0) {
-    exact_ = test::drawn_errors(Scene{}, random_);
-    exact_.bases.resize(cell_.scene.robots.size());
-    exact_.objects.resize(cell_.scene.objects.size());
-    for (const Robot& robot : cell_.scene.robots) {
-      exact_.frames.emplace_back(robot.joints.size());
-      exact_.positions.emplace_back(robot.joints.size(), 0.0);
-    }
-    for (const JointVariable& variable : cell_.scene.variables)
-      positions_.push_back(std::clamp(0.4, variable.lower, variable.upper));
-  }
-
-  // What the true machine is off its model by.
-  std::vector<double>& off() noexcept { return off_; }
-  test::DrawnErrors& errors() noexcept { return exact_; }
-  Vec3& camera_shift() noexcept { return camera_shift_; }
-  [[nodiscard]] const Cell& cell() const noexcept { return cell_; }
-  std::vector<double>& positions() noexcept { return positions_; }
-
-  // A picture, and the tick that gets it. Returns the rays that met the robot.
-  RaysOfRobot look(std::uint32_t robot) {
-    now_ += test::camera::kFrame;
-    ++frame_;
-    std::vector<JointSample> joints;
-    for (std::uint32_t v = 0; v < positions_.size(); ++v)
-      joints.push_back(test::joint(v, positions_[v], now_));
-    sensors_.add({}, joints, now_);
-    monitor_.tick({}, joints, now_);
-    send_picture();
-    sensors_.settle(
-        now_ + 25'000'000, [&](const SeenCloud* cloud) { return monitor_.uses(cloud); },
-        [&](std::uint32_t sensor, const SensorFrame& frame) { monitor_.show(sensor, frame); });
-    now_ += test::kTick;
-    for (JointSample& sample : joints) sample.stamp_ns = now_;
-    sensors_.add({}, joints, now_);
-    monitor_.tick({}, joints, now_);
-    return sensors_.status(0).robots[robot].rays;
-  }
-  // Pictures until the robot is denied; 0: it is not in `most` of them.
-  int pictures_until_denied(std::uint32_t robot, int most = 12) {
-    for (int i = 1; i <= most; ++i) {
-      look(robot);
-      if (is_unknown(robot)) return i;
-    }
-    return 0;
-  }
-  [[nodiscard]] bool is_unknown(std::uint32_t robot) const {
-    for (const RobotLink& link : cell_.scene.robots[robot].links) {
-      if (link.object == RobotLink::kNoObject || cell_.scene.objects[link.object].fixed) continue;
-      return monitor_.present_pose(link.object).state == PresentPose::State::kContradicted;
-    }
-    return false;
-  }
-
- private:
-  void send_picture() {
-    const Scene& scene = cell_.scene;
-    std::vector<double> truth = positions_;
-    for (std::size_t v = 0; v < truth.size(); ++v) truth[v] += off_[v];
-    const std::vector<Pose> poses =
-        test::true_poses(scene, truth, std::vector<Pose>(scene.objects.size()), exact_);
-    std::vector<rendering::PlacedBody> bodies;
-    for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
-      if (scene.objects[i].is_seen()) continue;
-      for (const Part& part : scene.objects[i].parts)
-        bodies.push_back({&part.shape, compose(poses[i], part.object_from_part), i});
-    }
-    Pose camera = scene.sensors[0].mount.base_from_root;
-    camera.position += camera_shift_;
-    renderer_.render(camera, bodies);
-    std::vector<std::byte> bytes;
-    rendering::measure(renderer_.depth(), DepthImage::Format::kMillimetres16,
-                       {.bound = {.constant = 0.004, .quadratic = 0.001},
-                        .range = {.least = 0.3, .greatest = 6.0},
-                        .missing_share = 0.02,
-                        .seed = 7},
-                       frame_, bytes);
-    test::camera::InfoText info;
-    info.width = kEyeColumns;
-    info.height = kEyeRows;
-    info.k = {kEyeFocal, 0, 159.5, 0, kEyeFocal, 119.5, 0, 0, 1};
-    info.p = {kEyeFocal, 0, 159.5, 0, 0, kEyeFocal, 119.5, 0, 0, 0, 1, 0};
-    info.stamp_ns = now_;
-    test::camera::ImageText image;
-    image.width = kEyeColumns;
-    image.height = kEyeRows;
-    image.step = 2 * kEyeColumns;
-    image.stamp_ns = now_;
-    image.data.resize(bytes.size());
-    std::memcpy(image.data.data(), bytes.data(), bytes.size());
-    add(RawSensorMessage::Type::kCameraInfo, "/cam/camera_info", info.cdr());
-    add(RawSensorMessage::Type::kImage, "/cam/image", image.cdr());
-  }
-  void add(RawSensorMessage::Type type, const std::string& topic,
-           const std::vector<std::byte>& cdr) {
-    sensors_.add({.type = type, .topic = topic, .sent_ns = now_ + 1000, .writer = 1, .cdr = cdr},
-                 {.realtime_ns = now_ + 1000, .monotonic_ns = now_ + 1000});
-  }
-
-  Cell cell_;
-  Sensors sensors_;
-  Monitor monitor_;
-  Random random_;
-  rendering::DepthRenderer renderer_;
-  std::vector<double> positions_, off_;
-  test::DrawnErrors exact_;
-  Vec3 camera_shift_ = Vec3::Zero();
-  std::int64_t now_ = test::camera::kStart;
-  std::uint64_t frame_ = 0;
-};
-
-std::uint32_t variable_of(const Cell& cell, const std::string& name) {
-  for (std::uint32_t v = 0; v < cell.scene.variables.size(); ++v)
-    if (cell.scene.variables[v].name == name) return v;
-  ADD_FAILURE() << name;
-  return 0;
-}
+using test::two_arms_and_eye;
+using test::variable_of;
+using test::WitnessedCell;
 
 TEST(SecondWitness, AgreesWithAMachineThatIsAsStated) {
   WitnessedCell watched(two_arms_and_eye());
@@ -217,6 +60,30 @@ TEST(SecondWitness, ShowsALostZeroBeforeItDeniesTheRobot) {
   }
   EXPECT_GT(residual(-0.01, stated), residual(-0.004, stated)) << "it grows with the fault";
   EXPECT_NEAR(residual(0.004, stated, 1), residual(0.0, stated, 1), 1e-6) << "the other arm";
+}
+
+// Links before the joint are where they were, but for what the others hide of them.
+TEST(SecondWitness, ShowsWhichLinksALostZeroMoves) {
+  const std::string stated = "errors: {joints: {position: 0.02}}\n";
+  WitnessedCell good(two_arms_and_eye(stated)), off(two_arms_and_eye(stated));
+  off.off()[variable_of(off.cell(), "left_joint4")] = -0.01;
+  const RaysOfRobot before = good.look(0), after = off.look(0);
+  const Robot& robot = good.cell().scene.robots[0];
+  std::size_t carries = 0;  // the joint; link carries + 1 is the first that hangs on it
+  while (robot.joints[carries].name != "left_joint4") ++carries;
+  std::uint32_t agreeing = 0;
+  double still = 0.0, moved = 0.0;  // the largest change of a median
+  for (std::size_t link = 0; link < robot.links.size(); ++link) {
+    const RaysMet &was = before.links[link], &is = after.links[link];
+    agreeing += was.agreeing;
+    EXPECT_LE(std::isnan(was.residual_p50), was.agreeing < 2 * Witness::kLeastRays);
+    if (std::isnan(was.residual_p50) || std::isnan(is.residual_p50)) continue;
+    double& change = link > carries ? moved : still;
+    change = std::max(change, std::abs(is.residual_p50 - was.residual_p50));
+  }
+  EXPECT_EQ(agreeing, before.agreeing) << "each ray is of one link";
+  EXPECT_LT(still, 0.0002);
+  EXPECT_GT(moved, 0.0005) << "by up to 10 mrad over its length";
 }
 
 TEST(SecondWitness, SeesALostZeroOfAJointInFivePictures) {

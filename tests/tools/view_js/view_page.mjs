@@ -305,6 +305,16 @@ async function minutes() {
   return (await speeds()).jsonValue();
 }
 
+// The plot of how far cameras see links behind their places: the names of its curves, and the values, mm.
+async function residuals() {
+  const plotted = await page.waitForFunction(() => {
+    const { data } = window.clearance.plots.made.residuals?.plot ?? { data: [] };
+    const known = data.slice(1).flat().filter((value) => value !== null);
+    return known.length > 0 && { known, names: [...document.querySelectorAll("#plot-residuals-names span")].map(({ textContent }) => textContent) };
+  });
+  return plotted.jsonValue();
+}
+
 // The page's texts for causes of zones by number, more than there are, as of the cell's first object.
 const causes = () => page.evaluate(() => {
   const { state } = window.clearance;
@@ -362,7 +372,7 @@ async function seen() {
   return { ...(await found.jsonValue()), modes };
 }
 
-const known = { crowded, robots, seen, causes, inputs, visuals, hiding, measuring, csv, minutes, resolution, firstView, look, labels, fading, layout, keys, ticks, zones };
+const known = { crowded, robots, seen, causes, inputs, visuals, hiding, measuring, csv, minutes, residuals, resolution, firstView, look, labels, fading, layout, keys, ticks, zones };
 try {
   await page.goto(url);
   await ready();

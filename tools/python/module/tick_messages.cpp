@@ -143,6 +143,7 @@ py::dict health_of(const clearance_msg_Health& m) {
   all["witnesses"] = dicts_of(m.witnesses, [](py::dict& item, const auto& one) {
     item["sensor"] = py::str(one.sensor);
     item["robot"] = py::str(one.robot);
+    item["link"] = py::str(one.link);
     item["agreeing"] = one.agreeing;
     item["through"] = one.through;
     item["denied"] = one.denied;

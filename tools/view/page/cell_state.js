@@ -81,6 +81,7 @@ export class CellState {
     }
     this.health = health;
     this.healthNs = timeNs;
+    this.history.takeHealth(health, timeNs);
   }
 
   // The least pair; undefined while it is unknown or stale.

@@ -8,6 +8,7 @@ const MOST_POINTS = 600; // of a curve
 const SHORTEST_S = 1 / 60; // of a stretch
 const MOST_VALUES = 4e6; // of each array with a column per pair: 16 MB
 const SPARE = 4; // columns beyond the pairs of the first report
+const MOST_RESIDUALS = 6; // curves
 const FETCHED_AGAIN_S = 0.1; // time of the recording
 
 // How two values of a stretch become one.
@@ -24,6 +25,7 @@ export class LiveHistory {
   constructor(nameOf) {
     this.nameOf = nameOf;
     this.columns = new Map(); // by the pair's id
+    this.medians = new Map(); // of residuals, [[s, m], ...], by the names of a camera and a link
   }
 
   begin(pairs) {
@@ -91,6 +93,22 @@ export class LiveHistory {
       join(this.pairs.speed, at * this.width + column, "speed", pair.closing_speed);
     }
   }
+  // Health has the residuals of links that cameras see.
+  takeHealth({ witnesses = [] }, ns) {
+    const now = ns * 1e-9;
+    for (const { sensor, link, residual_p50 } of witnesses) {
+      const name = `${sensor}: ${link}`, before = this.medians.get(name) ?? [];
+      if (link && residual_p50 === residual_p50)
+        this.medians.set(name, [...before.filter(([s]) => s > now - LONGEST_S && s < now), [now, residual_p50]]);
+    }
+    this.healthS = now;
+  }
+  // [["camera: link", [[s before now, m], ...]], ...]: those that are largest in the last `span` s.
+  residuals(span) {
+    const largest = ([, curve]) => Math.max(...curve.map(([, m]) => Math.abs(m)));
+    return [...this.medians].map(([name, curve]) => [name, curve.map(([s, m]) => [s - this.healthS, m]).filter(([s]) => s > -span)])
+      .filter(([, curve]) => curve.length).sort((a, b) => largest(b) - largest(a)).slice(0, MOST_RESIDUALS);
+  }
   // A pair that is added later, or means other objects from now on.
   renew(id) {
     if (!this.time) return;
@@ -135,12 +153,13 @@ export class RecordedHistory {
   constructor(timeline) {
     this.begin = Number(timeline.begin_ns);
     this.now = 0;
-    this.fetched = { end: NaN, asked: "", s: [], pairs: {}, speeds: {} };
+    this.fetched = { end: NaN, asked: "", s: [], pairs: {}, speeds: {}, residuals: {} };
   }
 
   take(report, minimum, scaling, ns) {
     this.now = (ns - this.begin) * 1e-9;
   }
+  takeHealth() {}
   renew() {}
 
   // Requests missing curves, one request at a time.
@@ -164,6 +183,10 @@ export class RecordedHistory {
     const { s, pairs, speeds } = this.fetched;
     const values = typeof name === "number" ? (of === "speed" ? speeds : pairs)[name] : this.fetched[name];
     return s.map((each, i) => [each - this.now, values?.[i] ?? undefined]).filter(([each]) => each <= 0 && each > -span);
+  }
+  // The server has chosen the largest.
+  residuals(span) {
+    return Object.entries(this.fetched.residuals).map(([name, curve]) => [name, curve.map(([s, m]) => [s - this.now, m]).filter(([s]) => s <= 0 && s > -span)]);
   }
 }
 

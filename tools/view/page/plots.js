@@ -1,5 +1,5 @@
 // The last seconds or minutes as curves, drawn by uPlot: the least distance and its lower bound, the time of the tick,
-// the speed scaling of zones, and distances or closing speeds of chosen pairs.
+// the speed scaling of zones, where cameras see links, and distances or closing speeds of chosen pairs.
 import uPlot from "uplot";
 import { axisOf, ticksOf } from "./axis.js";
 import { css, micro, mm, put } from "./format.js";
@@ -56,6 +56,18 @@ class Plot {
 const times = (curve) => curve.map(([s]) => s);
 const values = (curve, factor = 1) => curve.map(([, value]) => factor * value);
 
+// The names of curves in their colours.
+function nameCurves(id, texts) {
+  const names = document.getElementById(id), key = texts.join();
+  if (names.dataset.shown === key) return;
+  names.dataset.shown = key;
+  names.replaceChildren(...texts.map((text, i) => {
+    const name = Object.assign(document.createElement("span"), { textContent: text, title: text });
+    name.style.setProperty("--mark", `var(${HUES[i]})`);
+    return name;
+  }));
+}
+
 export class Plots {
   constructor() {
     this.choices = { span: document.getElementById("span"), quantity: document.getElementById("quantity") };
@@ -79,6 +91,7 @@ export class Plots {
     this.drawMinimum(state);
     this.drawTick(state);
     this.drawScaling(state);
+    this.drawResiduals(state);
     this.drawChosen(state, chosen);
   }
 
@@ -110,19 +123,21 @@ export class Plots {
     put(document.getElementById("plot-scaling-now"), scaling.toFixed(2));
   }
 
+  drawResiduals({ history }) {
+    const shown = history.residuals(this.span), plot = this.shown("residuals", shown.length > 0, () => HUES.map((hue) => curve(hue)));
+    if (!plot) return;
+    const at = [...new Set(shown.flatMap(([, curve]) => times(curve)))].sort((a, b) => a - b);
+    const curves = shown.map(([, curve]) => new Map(curve));
+    plot.draw([at, ...HUES.map((_, i) => at.map((s) => 1e3 * (curves[i]?.get(s) ?? NaN)))]);
+    nameCurves("plot-residuals-names", shown.map(([name]) => name));
+  }
+
   drawChosen({ pairs, history }, chosen) {
     const plot = this.shown("chosen", chosen.size > 0, () => HUES.map((hue) => curve(hue)));
     if (!plot) return;
     const of = this.choices.quantity.value, shown = [...chosen].slice(0, HUES.length);
     const curves = HUES.map((_, i) => history.curve(shown[i] ?? shown[0], this.span, undefined, of));
     plot.draw([times(curves[0]), ...curves.map((curve, i) => values(curve, i >= shown.length ? NaN : of === "distance" ? 1e3 : 1))]);
-    const names = document.getElementById("plot-chosen-names"), key = shown.map((id) => pairs[id].name).join();
-    if (names.dataset.shown === key) return;
-    names.dataset.shown = key;
-    names.replaceChildren(...shown.map((id, i) => {
-      const name = Object.assign(document.createElement("span"), { textContent: pairs[id].name, title: pairs[id].name });
-      name.style.setProperty("--mark", `var(${HUES[i]})`);
-      return name;
-    }));
+    nameCurves("plot-chosen-names", shown.map((id) => pairs[id].name));
   }
 }
