@@ -182,8 +182,8 @@ std::string PoseReader::senders_of_joints() const {
   }
   return fmt::format(
       "there is no publisher of {} or of rt/joint_states (any namespace) on {}; there is: {}. "
-      "Nothing is heard across domains{}, networks (--interface) or from an rmw that is no DDS "
-      "(rmw_zenoh)",
+      "Nothing is heard across domains{}, networks (--interface; ros meets ROS 2 nodes, also those "
+      "with ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST) or from an rmw that is no DDS (rmw_zenoh)",
       topics_->joint_states, where_, ros_.present().listed(),
       where_.find("ROS_DOMAIN_ID") == std::string::npos ? ros_domain() : "");
 }

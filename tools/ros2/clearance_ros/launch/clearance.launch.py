@@ -20,7 +20,7 @@ ARGUMENTS = [
     ("robot_description", "/robot_description", "The topic of the URDF, where no cell is given"),
     ("srdf", "", "An SRDF with the pairs that are left out, where no cell is given"),
     ("outputs", "all", "What is written for ROS 2, by the keys of `ros2:`, with commas between them"),
-    ("interface", "default", "The network: that of all ROS 2 nodes, lo, or a card"),
+    ("interface", "ros", "The network: ros is that of ROS 2's variables; default, lo, or a card"),
     ("domain", "", "The DDS domain; empty: the cell's, or else that of ROS_DOMAIN_ID, or 0"),
     ("priority", "", "Real-time priority, 1 to 99; empty: none"),
     ("record", "", "An MCAP file to record to; empty: none"),
