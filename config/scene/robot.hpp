@@ -59,6 +59,9 @@ struct JointVariable {
   double speed_tolerance = 4.0;
   // A position that is farther outside its limits than this is not plausible; rad or m.
   double limit_tolerance = 0.0;
+  // Velocities are differences of positions that one message tells alone, so that no position
+  // contradicts them: of the base of a robot that follows a frame of tf.
+  bool velocity_is_difference = false;
   bool wraps = false;                // an angle that is the same after a full turn
   std::int64_t age_limit_ns = 0;     // an older position is late
   std::int64_t frozen_limit_ns = 0;  // the joint may keep its position for this long; 0: always

@@ -255,8 +255,10 @@ void float_root(RobotModel& model, const std::string& prefix, const std::string&
   model.robot.links.insert(model.robot.links.begin(), {prefix + name + "_world"});
   model.robot.joints.insert(model.robot.joints.begin(), joint);
   std::vector<JointVariable> added(kAdded);
-  for (std::uint32_t i = 0; i < kAdded; ++i)
+  for (std::uint32_t i = 0; i < kAdded; ++i) {
     added[i].name = joint.name + std::string(suffix(JointType::kFloating, i));
+    added[i].velocity_is_difference = true;
+  }
   model.variables.insert(model.variables.begin(), added.begin(), added.end());
 }
 

@@ -80,7 +80,8 @@ struct PositionCandidate {
   void use() const noexcept {
     const std::int64_t interval_ns = elapsed(state.input.stamp_ns, stamp_ns);
     const bool sent = has_usable_velocity(variable, sample);
-    state.velocities_contradict = state.plausibility.rates_contradict();
+    state.velocities_contradict =
+        !variable.velocity_is_difference && state.plausibility.rates_contradict();
     if (sent && !state.velocities_contradict) {
       state.velocity = sample.velocity;
       state.velocity_known = true;

@@ -122,6 +122,27 @@ void join_notes(Views views, Message& out) {
   }
 }
 
+// A share that has no sensor's pairs does not read it: the picture with the most rays counts.
+void join_witnesses(Views views, Message& out) {
+  std::map<std::pair<std::string, std::string>, clearance_msg_WitnessHealth> witnesses;
+  for_all(views, &Message::witnesses, [&](const clearance_msg_WitnessHealth& witness) {
+    const auto [at, is_new] = witnesses.emplace(std::pair(witness.sensor, witness.robot), witness);
+    if (is_new) return;
+    clearance_msg_WitnessHealth& to = at->second;
+    const bool is_denied = to.denied || witness.denied;
+    if (witness.agreeing + witness.through > to.agreeing + to.through) to = witness;
+    to.denied = is_denied;
+  });
+  reserve_sequence(out.witnesses, std::min<std::size_t>(witnesses.size(), 4096));
+  for (const auto& [names, witness] : witnesses) {
+    if (out.witnesses._length == out.witnesses._maximum) return;
+    clearance_msg_WitnessHealth& to = out.witnesses._buffer[out.witnesses._length++];
+    to = witness;
+    to.sensor = dds_string_dup(witness.sensor);
+    to.robot = dds_string_dup(witness.robot);
+  }
+}
+
 // The share is told first whose partners do not agree, and among these the one with the most
 // differences.
 void join_partners(Views views, clearance_msg_PartnerHealth& out) {
@@ -201,6 +222,7 @@ void join_health(Views views, std::span<const HealthCounts* const> counts,
   join_ages(views, &Message::joints, &clearance_msg_JointAge::variable, out);
   join_sources(views, out);
   join_notes(views, out);
+  join_witnesses(views, out);
 }
 
 }  // namespace clearance::client

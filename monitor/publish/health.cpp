@@ -63,12 +63,34 @@ void add_refused_frames(const Scene& scene, const std::vector<SensorStatus>& sen
   }
 }
 
+// The robots that a sensor is asked about; what others carry is not looked at.
+void fill_witnesses(const Scene& scene, const std::vector<SensorStatus>& sensors,
+                    clearance_msg_Health& out) {
+  std::size_t most = 0;
+  for (const SensorStatus& sensor : sensors) most += sensor.robots.size();
+  reserve_sequence(out.witnesses, std::min<std::size_t>(most, 4096));
+  for (std::size_t i = 0; i < std::min(scene.sensors.size(), sensors.size()); ++i) {
+    const std::vector<RobotSeen>& robots = sensors[i].robots;
+    for (std::size_t r = 0; r < std::min(scene.robots.size(), robots.size()); ++r) {
+      if (scene.robots[r].is_attached) continue;
+      if (out.witnesses._length == out.witnesses._maximum) return;
+      clearance_msg_WitnessHealth& entry = out.witnesses._buffer[out.witnesses._length++];
+      entry.sensor = dds_string_dup(scene.sensors[i].name.c_str());
+      entry.robot = dds_string_dup(scene.robots[r].name.c_str());
+      entry.agreeing = robots[r].rays.agreeing;
+      entry.through = robots[r].rays.through;
+      entry.denied = robots[r].count.denied;
+      entry.residual_p50 = robots[r].rays.residual_p50;
+      entry.residual_p90 = robots[r].rays.residual_p90;
+    }
+  }
+}
+
 // Lists refusals by source and by object. Refusals of unknown ids have no object, so they are
 // listed by cause: the totals minus the objects' counts.
 void fill_rejections(const Scene& scene, const LoopStatistics& statistics, const PoseReader& poses,
-                     clearance_msg_Health& out) {
+                     const std::vector<SensorStatus>& sensors, clearance_msg_Health& out) {
   const std::vector<RefusedSource> refused = poses.refused_sources();
-  const std::vector<SensorStatus> sensors = poses.sensors();
   const std::size_t inputs = scene.objects.size() + scene.variables.size();
   const std::size_t most =
       1 + refused.size() + (inputs + 1) * kRejects + sensors.size() * kFrameFaults;
@@ -200,7 +222,9 @@ Sample<clearance_msg_Health> make_health(const Scene& scene, const LoopStatistic
   sample->recording_missing = recording.missing();
   sample->undecodable_samples = poses.undecodable();
   fill_loop(statistics, *sample);
-  fill_rejections(scene, statistics, poses, *sample);
+  const std::vector<SensorStatus> sensors = poses.sensors();
+  fill_rejections(scene, statistics, poses, sensors, *sample);
+  fill_witnesses(scene, sensors, *sample);
   fill_inputs(scene, statistics, *sample);
   fill_joints(scene, statistics, *sample);
   fill_notes(scene, statistics, *sample);

@@ -10,16 +10,21 @@
 namespace clearance {
 namespace {
 
-constexpr float kNowhere = std::numeric_limits<float>::infinity();
-
-// The depths between which a ray is inside of a body; empty if they do not ascend.
+// The depths between which a ray is inside of a body; empty if they do not ascend. A metre of depth
+// leads `slope` metres into the surface at `from`; 0: it begins inside.
 struct Span {
   double from = 0.0, to = kInfinity;
-  void cut(double at, double slope) noexcept {  // keeps slope * depth <= at
-    if (slope > 0.0) {
-      to = std::min(to, at / slope);
-    } else if (slope < 0.0) {
-      from = std::max(from, at / slope);
+  double slope = 0.0;
+  void begin(double at, double steepness) noexcept {
+    if (!(at > from)) return;
+    from = at;
+    slope = steepness;
+  }
+  void cut(double at, double rise) noexcept {  // keeps rise * depth <= at
+    if (rise > 0.0) {
+      to = std::min(to, at / rise);
+    } else if (rise < 0.0) {
+      begin(at / rise, -rise);
     } else if (at < 0.0) {
       to = -kInfinity;
     }
@@ -42,7 +47,9 @@ Span in_ball(const Vec3& centre, double radius, const Vec3& origin, const Vec3& 
                c = from.squaredNorm() - radius * radius;
   const double root = b * b - a * c;
   if (!(radius > 0.0) || !(root > 0.0)) return {.to = -kInfinity};
-  return {.from = std::max(0.0, (-b - std::sqrt(root)) / a), .to = (-b + std::sqrt(root)) / a};
+  Span span{.to = (-b + std::sqrt(root)) / a};
+  span.begin((-b - std::sqrt(root)) / a, std::sqrt(root) / radius);
+  return span;
 }
 
 // Between two planes across the z-axis, and within a cylinder around it.
@@ -58,7 +65,7 @@ Span in_cylinder(double low, double high, double radius, const Vec3& origin,
   if (a == 0.0) return span;
   const double root = b * b - a * c;
   if (!(root > 0.0)) return {.to = -kInfinity};
-  span.from = std::max(span.from, (-b - std::sqrt(root)) / a);
+  span.begin((-b - std::sqrt(root)) / a, std::sqrt(root) / radius);
   span.to = std::min(span.to, (-b + std::sqrt(root)) / a);
   return span;
 }
@@ -92,9 +99,20 @@ Span inside(const ConvexBody& body, const Vec3& origin, const Vec3& along, doubl
         body.anchors[0] + (static_cast<double>(i) / kBalls) * (body.anchors[1] - body.anchors[0]);
     const Span ball = in_ball(centre, body.radius + offset, origin, along);
     if (!ball.any()) continue;
-    span = span.any() ? Span{std::min(span.from, ball.from), std::max(span.to, ball.to)} : ball;
+    span = span.any()
+               ? Span{.from = std::min(span.from, ball.from), .to = std::max(span.to, ball.to)}
+               : ball;
   }
   return span;
+}
+
+// True if inside() without an offset is the body itself, and not one beside it.
+bool is_exact(const ConvexBody& body) noexcept {
+  if (!body.is_curved()) return !body.is_thin() || body.anchors.size() < 2;
+  const CurvedShape& shape = body.curved;
+  if (shape.kind == CurvedShape::Kind::kTruncatedCone)
+    return shape.discs[0].radius == shape.discs[1].radius;
+  return shape.semi_axes.minCoeff() == shape.semi_axes.maxCoeff();
 }
 
 // The depth of a pixel, m; NaN: missing.
@@ -113,7 +131,8 @@ double depth_at(const DepthImage& image, std::uint32_t column, std::uint32_t row
 }  // namespace
 
 Witness::Witness(const Scene& scene)
-    : scene_(scene), errors_(scene), surest_(kRays), nearest_(kRays), rays_(scene.robots.size()) {
+    : scene_(scene), errors_(scene), met_(kRays), rays_(scene.robots.size()) {
+  residuals_.reserve(kRays);
   std::size_t parts = 0;
   for (const Object& object : scene.objects) parts += object.parts.size();
   placed_.reserve(parts);
@@ -183,11 +202,12 @@ void Witness::spread_rays() noexcept {
   grid_.columns = rays_of(all.right - all.left);
   grid_.rows = rays_of(all.bottom - all.top);
   const auto rays = static_cast<std::ptrdiff_t>(grid_.columns * grid_.rows);
-  std::fill(surest_.begin(), surest_.begin() + rays, kNowhere);
-  std::fill(nearest_.begin(), nearest_.begin() + rays, kNowhere);
+  std::fill(met_.begin(), met_.begin() + rays, Ray{});
 }
 
 void Witness::meet(const Placed& placed, const PinholeCamera& camera) noexcept {
+  const ConvexBody& shape = placed.part->shape;
+  const bool exact = is_exact(shape);
   const Mat3& turn = placed.camera_from_part.rotation;
   const Vec3 origin = -(turn.transpose() * placed.camera_from_part.translation);
   const auto first = [&](std::uint32_t pixel, std::uint32_t begin) {
@@ -200,23 +220,31 @@ void Witness::meet(const Placed& placed, const PinholeCamera& camera) noexcept {
       const Vec3 ray((grid_.left + column * grid_.step - camera.cx) / camera.fx,
                      (grid_.top + row * grid_.step - camera.cy) / camera.fy, 1.0);
       const Vec3 along = turn.transpose() * ray;
-      const std::size_t index = row * grid_.columns + column;
-      const Span grown = inside(placed.part->shape, origin, along, placed.error);
+      Ray& met = met_[row * grid_.columns + column];
+      const Span grown = inside(shape, origin, along, placed.error);
       if (!grown.any()) continue;
-      nearest_[index] = std::min(nearest_[index], static_cast<float>(grown.from));
-      const Span shrunk = inside(placed.part->shape, origin, along, -placed.error);
-      if (shrunk.any()) surest_[index] = std::min(surest_[index], static_cast<float>(shrunk.from));
+      met.nearest = std::min(met.nearest, static_cast<float>(grown.from));
+      // A part that may begin only behind the sure one adds nothing.
+      if (!(grown.from < met.surest)) continue;
+      const Span stated = exact ? inside(shape, origin, along, 0.0) : Span{.from = grown.from};
+      if (stated.any() && stated.from < met.stated) {
+        met.stated = static_cast<float>(stated.from);
+        met.slope = static_cast<float>(stated.slope);
+      }
+      const Span shrunk = inside(shape, origin, along, -placed.error);
+      if (shrunk.any()) met.surest = std::min(met.surest, static_cast<float>(shrunk.from));
     }
   }
 }
 
-RaysOfRobot Witness::count(const Sensor& sensor, const DepthImage& image) const noexcept {
+RaysOfRobot Witness::count(const Sensor& sensor, const DepthImage& image) noexcept {
   const DepthError error{sensor.error_constant, sensor.error_quadratic};
   RaysOfRobot rays;
+  residuals_.clear();
   for (std::uint32_t row = 0; row < grid_.rows; ++row) {
     for (std::uint32_t column = 0; column < grid_.columns; ++column) {
-      const std::size_t index = row * grid_.columns + column;
-      const double surest = surest_[index];
+      const Ray& met = met_[row * grid_.columns + column];
+      const double surest = met.surest;
       if (!(surest >= sensor.least_depth && surest <= sensor.greatest_depth)) continue;
       const double depth =
           depth_at(image, grid_.left + column * grid_.step, grid_.top + row * grid_.step);
@@ -224,12 +252,29 @@ RaysOfRobot Witness::count(const Sensor& sensor, const DepthImage& image) const 
       const double by = error.at(depth);
       if (depth > surest + by) {
         ++rays.through;
-      } else if (depth >= nearest_[index] - by) {
+      } else if (depth >= met.nearest - by) {
         ++rays.agreeing;
+        if (met.slope > 0.0F)
+          residuals_.push_back(static_cast<float>((depth - met.stated) * met.slope));
       }
     }
   }
+  measure(rays);
   return rays;
+}
+
+// Selects quantiles of the residuals, which are among them: no sum depends on an order.
+void Witness::measure(RaysOfRobot& rays) noexcept {
+  if (residuals_.empty()) return;
+  const auto at = [&](std::size_t rank) {
+    const auto place = residuals_.begin() + static_cast<std::ptrdiff_t>(rank);
+    std::nth_element(residuals_.begin(), place, residuals_.end());
+    return static_cast<double>(*place);
+  };
+  const std::size_t last = residuals_.size() - 1;
+  rays.residual_p50 = at(last / 2);
+  for (float& residual : residuals_) residual = std::abs(residual);
+  rays.residual_p90 = at(last * 9 / 10);
 }
 
 RobotsSeen Witness::judge(const Sensor& sensor, const PinholeCamera& camera,

@@ -7,6 +7,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <vector>
 
 #include "config/scene/scene.hpp"
@@ -17,10 +18,15 @@
 
 namespace clearance {
 
-// How many rays of a picture met a robot.
+// The rays of a picture that met a robot.
 struct RaysOfRobot {
   std::uint32_t agreeing = 0;  // depth as the model allows
   std::uint32_t through = 0;   // depth behind where the robot must be
+  // Of the rays that agree, m: how far the measured point is behind the surface that the joints
+  // place, along the surface's normal. The median, and the 90 % quantile of the absolute value.
+  // NaN: no ray that agrees met a part whose surface is known exactly.
+  double residual_p50 = std::numeric_limits<double>::quiet_NaN();
+  double residual_p90 = residual_p50;
 };
 
 class Witness {
@@ -57,22 +63,29 @@ class Witness {
   struct Grid {
     std::uint32_t left = 0, top = 0, step = 1, columns = 0, rows = 0;
   };
+  // The depths at which a ray comes to a robot, m: its shrunk bodies, the nearest place where it
+  // may begin, and its bodies as stated. A metre of depth leads `slope` metres into the stated
+  // surface, along its normal; 0: the surface is not known exactly.
+  struct Ray {
+    float surest = kNowhere, nearest = kNowhere, stated = kNowhere, slope = 0.0F;
+  };
+  static constexpr float kNowhere = std::numeric_limits<float>::infinity();
   [[nodiscard]] static Pixels pixels_around(const Vec3& centre, double radius,
                                             const PinholeCamera& camera) noexcept;
   void place_parts(std::uint32_t r, const Sensor& sensor, const PinholeCamera& camera,
                    const PastPose& place, const PostureHistory& postures) noexcept;
   void spread_rays() noexcept;
   void meet(const Placed& placed, const PinholeCamera& camera) noexcept;
-  [[nodiscard]] RaysOfRobot count(const Sensor& sensor, const DepthImage& image) const noexcept;
+  [[nodiscard]] RaysOfRobot count(const Sensor& sensor, const DepthImage& image) noexcept;
+  void measure(RaysOfRobot& rays) noexcept;
 
   const Scene& scene_;
   StatedErrors errors_;
   std::vector<Placed> placed_;  // of the robot that is looked at
   Grid grid_;
-  // By ray, of the robot that is looked at: where its shrunk bodies begin, and where it may begin
-  // at the nearest, m.
-  std::vector<float> surest_, nearest_;
-  std::vector<RaysOfRobot> rays_;
+  std::vector<Ray> met_;           // of the robot that is looked at
+  std::vector<float> residuals_;   // of that robot's rays that agree, m
+  std::vector<RaysOfRobot> rays_;  // by robot
 };
 
 }  // namespace clearance

@@ -13,6 +13,7 @@
 #include "tools/watch/feed_words.hpp"
 #include "tools/watch/number_text.hpp"
 #include "tools/watch/separation_lines.hpp"
+#include "tools/watch/witness_lines.hpp"
 
 namespace clearance::watch {
 namespace {
@@ -301,6 +302,7 @@ std::vector<Line> screen_lines(const Feed& feed, const ViewContext& context, Siz
     add_shares(lines, feed, size.columns);
     add_health(lines, feed, context, size.columns);
     add_inputs(lines, feed, size.columns);
+    add_witnesses(lines, feed, size.columns);
     add_pairs(lines, feed, size);
   }
   if (lines.size() > size.rows)
@@ -341,6 +343,7 @@ std::string plain_line(const Feed& feed, const ViewContext& context) {
   }
   for (const std::string& each : separation_texts(feed)) text += fmt::format("  {}", each);
   for (const std::string& each : contact_texts(feed)) text += fmt::format("  {}", each);
+  for (const std::string& each : witness_texts(feed)) text += fmt::format("  {}", each);
   if (const auto* health = feed.health()) {
     text += fmt::format("  tick p50 {:.1f} p99.9 {:.1f} max {:.1f} us  overruns {}",
                         health->tick_p50_us, health->tick_p999_us, health->tick_max_us,

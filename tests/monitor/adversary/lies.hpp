@@ -11,6 +11,10 @@
 // - A source leaps, and stays there until the object can have got there.
 // - A value is wrong by less than the object moves within its age limit. The cell accepts that as
 //   an error of timing.
+// - The points of a camera are false and move as points may. A program that publishes them first,
+//   or takes them over from one that is silent, is believed.
+// - A cloud of one row loses points: only rows of a picture say how many there have to be.
+// - A map stands still under fresh stamps: so does one of a place where nothing changes.
 #pragma once
 
 #include <array>
@@ -44,10 +48,20 @@ enum class Lie : std::uint8_t {
   kTakeover,           // the owner is silent, and a rival says what cannot have been reached
   kOutOfLimits,        // a joint beyond its limits, from the start
   kWrapped,            // no lie: a continuous joint within plus or minus pi
-  kParentFar,          // a frame hangs on another parent, 50 m away
+  kParentFar,          // a frame hangs on another parent, or points are in that frame, 50 m away
   kWrongQuaternion,    // not of unit length, or half a turn away
   kNotANumber,         //
   kScaled,             // lengths in mm, angles in degrees
+  kTorn,               // all points but one are missing
+  kLayout,             // fields of points that share bytes, or rows that are half padding
+  kRing,               // twelve pictures in turn, with fresh stamps
+  kHeld,               // a network holds all messages back, and delivers them at the end
+  kMiscounted,         // a joint twice with two values, or too few values for a robot's links
+  kAttached,           // no lie: a command attaches the part to the arm, another one detaches it
+  kAbsent,             // no lie: commands take a ball away and bring it back
+  kUnwatched,          // no lie: commands leave a pair out and watch it again
+  kAllowed,            // no lie: commands allow a contact and withdraw it
+  kRestored,           // no lie: a partner goes on from the saved state, and its reports count
   kCount
 };
 inline constexpr auto kLies = static_cast<std::size_t>(Lie::kCount);
@@ -100,6 +114,10 @@ struct Told {
   std::int64_t stamp_offset = 0;   // ns
   std::int64_t longest_delay = 0;  // ns
   bool is_repeated = false;
+  bool is_torn = false, has_other_layout = false, is_padded = false;  // of what is seen
+  bool goes_on_a_little = false;                                      // one pixel of a picture
+  std::int64_t held_until = 0;
+  bool has_joint_twice = false, has_too_few = false;
 };
 [[nodiscard]] Told told(const Fault& fault, std::int64_t t);
 

@@ -182,9 +182,41 @@ TEST(SecondWitness, AgreesWithAMachineThatIsAsStated) {
     const RaysOfRobot rays = watched.look(0);
     EXPECT_GT(rays.agreeing, 100u);
     EXPECT_EQ(rays.through, 0u);
+    EXPECT_LT(std::abs(rays.residual_p50), 0.001);
+    EXPECT_GE(rays.residual_p90, std::abs(rays.residual_p50));
+    EXPECT_LT(rays.residual_p90, 0.0105) << "the noise at the greatest depth of the arm";
     EXPECT_FALSE(watched.is_unknown(0));
     EXPECT_FALSE(watched.is_unknown(1));
   }
+}
+
+// The mean of the medians of eight pictures, m; the robot must not be denied meanwhile.
+double mean_residual(WitnessedCell& watched, std::uint32_t robot) {
+  double sum = 0.0;
+  for (int i = 0; i < 8; ++i) {
+    sum += watched.look(robot).residual_p50;
+    EXPECT_FALSE(watched.is_unknown(robot));
+  }
+  return sum / 8;
+}
+
+// A median over hundreds of rays is sure to a small part of the noise, which is 8 mm here. Most of
+// these rays meet links that a lost zero of the second joint hardly moves.
+TEST(SecondWitness, ShowsALostZeroBeforeItDeniesTheRobot) {
+  const auto residual = [](double lost, const std::string& errors, std::uint32_t robot = 0) {
+    WitnessedCell watched(two_arms_and_eye(errors));
+    watched.off()[variable_of(watched.cell(), "left_joint2")] = lost;
+    return mean_residual(watched, robot);
+  };
+  const std::string stated = "errors: {joints: {position: 0.02}}\n";
+  for (const std::string& errors : {std::string(), stated}) {
+    const double good = residual(0.0, errors);
+    EXPECT_LT(std::abs(good), 0.0002) << errors;
+    EXPECT_LT(residual(0.004, errors), good - 0.0001) << "nearer: " << errors;
+    EXPECT_GT(residual(-0.004, errors), good + 0.0001) << "farther: " << errors;
+  }
+  EXPECT_GT(residual(-0.01, stated), residual(-0.004, stated)) << "it grows with the fault";
+  EXPECT_NEAR(residual(0.004, stated, 1), residual(0.0, stated, 1), 1e-6) << "the other arm";
 }
 
 TEST(SecondWitness, SeesALostZeroOfAJointInFivePictures) {

@@ -194,6 +194,16 @@ inline void fill(std::mt19937_64& random, Sample<clearance_msg_Health>& health) 
                                                         "arm",
                                                         "zeros"};
   }
+  reserve_sequence(health->witnesses, random() % 6);
+  for (std::uint32_t i = 0; i < health->witnesses._maximum; ++i) {
+    health->witnesses._buffer[health->witnesses._length++] = {any_text(random),
+                                                              any_text(random),
+                                                              static_cast<std::uint32_t>(random()),
+                                                              i,
+                                                              random() % 2 != 0,
+                                                              any_double(random),
+                                                              any_double(random)};
+  }
 }
 
 }  // namespace clearance::test

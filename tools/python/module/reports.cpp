@@ -156,8 +156,8 @@ since_cycle, cycle, now_ns. Empty while none has come.)")
           "health", &Reports::health,
           R"(The daemon's health, which comes once a second: a dict; None while none has come.
 
-Keys are the fields of Health in idl/FIELDS.md, times in us and ns. rejected, inputs, joints, sources
-and notes are lists of dicts.)");
+Keys are the fields of Health in idl/FIELDS.md, times in us and ns. rejected, inputs, joints, sources,
+notes, shares and witnesses are lists of dicts.)");
   add_closing(reports);
 }
 

@@ -30,6 +30,22 @@ void put_age(py::dict& item, const Age& age) {
   item["other_source"] = py::str(age.other_source);
 }
 
+py::dict partner_of(const clearance_msg_PartnerHealth& of) {
+  py::dict partner;
+  partner["partner"] = py::str(of.partner);
+  partner["other"] = py::str(of.other);
+  partner["standing"] = of.standing;
+  partner["leads"] = of.leads;
+  partner["other_publishes"] = of.other_publishes;
+  partner["agrees_from"] = of.agrees_from;
+  partner["compared"] = of.compared;
+  partner["different"] = of.different;
+  partner["other_inputs"] = of.other_inputs;
+  partner["missing"] = of.missing;
+  partner["phase_ns"] = of.phase_ns;
+  return partner;
+}
+
 }  // namespace
 
 GradientArrays gradient_arrays(const clearance_msg_Gradients& message,
@@ -115,19 +131,7 @@ py::dict health_of(const clearance_msg_Health& m) {
     item["former_source"] = py::str(one.former_source);
     item["velocities_contradict"] = one.velocities_contradict;
   });
-  py::dict partner;
-  partner["partner"] = py::str(m.partner.partner);
-  partner["other"] = py::str(m.partner.other);
-  partner["standing"] = m.partner.standing;
-  partner["leads"] = m.partner.leads;
-  partner["other_publishes"] = m.partner.other_publishes;
-  partner["agrees_from"] = m.partner.agrees_from;
-  partner["compared"] = m.partner.compared;
-  partner["different"] = m.partner.different;
-  partner["other_inputs"] = m.partner.other_inputs;
-  partner["missing"] = m.partner.missing;
-  partner["phase_ns"] = m.partner.phase_ns;
-  all["partner"] = partner;
+  all["partner"] = partner_of(m.partner);
   all["shares"] = dicts_of(m.shares, [](py::dict& item, const auto& one) {
     item["share"] = py::str(one.share);
     item["state"] = one.state;
@@ -135,6 +139,15 @@ py::dict health_of(const clearance_msg_Health& m) {
     item["cycle"] = one.cycle;
     item["scene_revision"] = one.scene_revision;
     item["age_ns"] = one.age_ns;
+  });
+  all["witnesses"] = dicts_of(m.witnesses, [](py::dict& item, const auto& one) {
+    item["sensor"] = py::str(one.sensor);
+    item["robot"] = py::str(one.robot);
+    item["agreeing"] = one.agreeing;
+    item["through"] = one.through;
+    item["denied"] = one.denied;
+    item["residual_p50"] = one.residual_p50;
+    item["residual_p90"] = one.residual_p90;
   });
   return all;
 }
