@@ -18,6 +18,33 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
 OURS = ROOT / "tools/ros2/clearance_ros"
 MESSAGES = BUILD / "idl/clearance_msgs"
+SOURCES = ROOT / "tools/ros2/clearance"
+
+# Packages of Debian that tools/setup installs, and the keys that rosdep has for them; None: it has none.
+KEYS = {
+    "cyclonedds-dev": "cyclonedds",
+    "cyclonedds-tools": "cyclonedds",
+    "libassimp-dev": "assimp",
+    "libboost-dev": "libboost-dev",
+    "libcli11-dev": "cli11",
+    "libeigen3-dev": "eigen",
+    "libfmt-dev": "fmt",
+    "libgmp-dev": "libgmp",
+    "libhwy-dev": None,
+    "liblz4-dev": "liblz4-dev",
+    "libncurses-dev": "libncurses-dev",
+    "libspdlog-dev": "spdlog",
+    "libsqlite3-dev": "libsqlite3-dev",
+    "libsystemd-dev": "libsystemd-dev",
+    "libtinyxml2-dev": "tinyxml2",
+    "libyaml-cpp-dev": "yaml-cpp",
+    "libzstd-dev": "libzstd-dev",
+    "nlohmann-json3-dev": "nlohmann-json-dev",
+    "prometheus-cpp-dev": None,
+    "python3": "python3",
+    "zlib1g-dev": "zlib",
+}
+OF_COLCON = {"g++", "ninja-build"}  # or of another compiler and build program
 
 
 class Named:
@@ -146,11 +173,30 @@ class RosPackages(unittest.TestCase):
         self.assertLessEqual({*left, *right}, {name for name, _, _ in one.ARGUMENTS})
 
     def test_each_package_has_the_name_of_its_folder_and_one_version(self):
-        found = [xml.parse(folder / "package.xml").getroot() for folder in (OURS, MESSAGES)]
-        self.assertEqual([each.find("name").text for each in found], ["clearance_ros", "clearance_msgs"])
-        self.assertEqual(found[0].find("version").text, found[1].find("version").text)
-        for folder in (OURS, MESSAGES):
+        folders = (OURS, MESSAGES, SOURCES)
+        found = [xml.parse(folder / "package.xml").getroot() for folder in folders]
+        self.assertEqual([each.find("name").text for each in found], [folder.name for folder in folders])
+        self.assertEqual(len({each.find("version").text for each in found}), 1)
+        for folder in folders:
             self.assertIn(f"project({folder.name}", (folder / "CMakeLists.txt").read_text())
+
+    def test_the_package_of_the_sources_needs_what_setup_installs(self):
+        needed = re.search(r"^packages=\((.*?)\)$", (ROOT / "tools/setup").read_text(), re.MULTILINE | re.DOTALL)
+        keys = {KEYS[name] for name in set(needed[1].split()) - OF_COLCON - {"cmake"}}
+        package = xml.parse(SOURCES / "package.xml").getroot()
+        self.assertEqual({each.text for kind in ("build_depend", "depend") for each in package.iter(kind)}, keys - {None})
+        told = (SOURCES / "package.xml").read_text()
+        for name in (name for name, key in KEYS.items() if key is None):
+            self.assertIn(name, told)
+
+    def test_the_package_of_the_sources_is_a_project_that_builds_them(self):
+        with tempfile.TemporaryDirectory() as folder:
+            done = subprocess.run(["cmake", "-S", SOURCES, "-B", folder, "-DCLEARANCE_PYTHON=OFF"], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            targets = subprocess.run(["cmake", "--build", folder, "--target", "help"], capture_output=True, text=True, check=True).stdout
+        for target in ("clearanced", "clearance-replay", "clearance_client"):
+            self.assertRegex(targets, rf"(?m)\b{target}$")
+        self.assertNotIn("core_tests", targets)
 
     def test_every_message_is_listed_and_every_listed_message_exists(self):
         listed = re.findall(r"msg/\w+\.msg", (MESSAGES / "CMakeLists.txt").read_text())
