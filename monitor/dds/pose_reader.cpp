@@ -87,6 +87,7 @@ PoseReader::PoseReader(const Cell& cell, Participant& participant, MoveItMessage
   open(participant, TopicKind::kPoses);
   if (!cell.scene.variables.empty()) open(participant, TopicKind::kJointStates);
   if (intake_.hears_ros()) wait_.add(ros_.present().reader());
+  ros_.stand();
   ring_.prepare([&](PoseBatch& slot) {
     slot.samples.resize(samples_a_batch(cell));
     slot.joints.resize(joints_a_batch(cell));
@@ -103,6 +104,7 @@ void PoseReader::change(const Cell& cell) {
   const std::lock_guard lock(mutex_);
   topics_ = &cell.topics;
   intake_.change(cell);
+  ros_.stand();
 }
 
 // Cyclone copies the listener and the filter. The objects to which they point are members of this
