@@ -24,7 +24,7 @@ struct Cell {
 
   std::optional<std::uint32_t> domain = {};  // DDS; none: as DdsOptions
   std::string partition = {};                // DDS; empty: the default partition
-  std::string interface = "lo";  // DDS: a network card, or "default": as Cyclone chooses
+  std::string interface = {};                // DDS; empty: as DdsOptions
   Topics topics = {};
   // Reports carry the pairs that changed, and all pairs once in this time, s; 0: always all.
   double full_every_s = 0.0;

@@ -76,8 +76,9 @@ void read_dds(const YamlNode& node, Cell& cell, Diagnostics& diagnostics) {
     }
   }
   if (const YamlNode* interface = map.optional("interface")) {
-    cell.interface = read_text(*interface, "lo, default or the name of a network card", diagnostics)
-                         .value_or("lo");
+    cell.interface =
+        read_text(*interface, "lo, default, ros or the name of a network card", diagnostics)
+            .value_or("");
   }
   if (const YamlNode* topics = map.optional("topics"))
     read_topics(*topics, cell.topics, diagnostics);

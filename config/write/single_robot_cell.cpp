@@ -50,6 +50,9 @@ std::string single_robot_cell(const SingleRobotOptions& options) {
     out << YAML::Key << "srdf" << YAML::Value << YAML::DoubleQuoted
         << path_text(options.srdf, options);
   }
+  if (!options.joint_states.empty()) {
+    out << YAML::Key << "joint_states" << YAML::Value << YAML::DoubleQuoted << options.joint_states;
+  }
   if (!options.packages.empty()) {
     out << YAML::Key << "packages" << YAML::Value << YAML::BeginMap;
     for (const auto& [package, directory] : options.packages) {

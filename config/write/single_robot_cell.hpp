@@ -17,7 +17,8 @@ struct SingleRobotOptions {
   std::filesystem::path srdf = {};  // empty: neighbours may touch
   // The same as `packages:` of a robot in a cell.
   std::vector<std::pair<std::string, std::filesystem::path>> packages = {};
-  double age_limit_ms = 20.0;  // of its joints
+  double age_limit_ms = 20.0;     // of its joints
+  std::string joint_states = {};  // the topic of ROS 2 that has its joints; empty: any by that name
   // The cell's keys `tolerance`, m, and `max_parts`, which limit the parts of meshes.
   std::optional<double> mesh_tolerance = {};
   std::optional<unsigned> max_parts = {};

@@ -76,7 +76,7 @@ void MapReader::refuse_unknown_keys() {
 }
 
 // The reference leads to a static empty list where there is none.
-const std::vector<YamlNode>& read_list(const YamlNode& node, const std::string& what,
+const std::vector<YamlNode>& read_list(const YamlNode& node, std::string_view what,
                                        Diagnostics& diagnostics) {
   static const std::vector<YamlNode> kEmpty;
   if (node.kind == YamlNode::Kind::kSequence) return node.items;

@@ -37,7 +37,7 @@ class MapReader {
 
 // Returns the items of a list; where there is none, an empty list after a diagnostic. `what`
 // finishes "expected a list of ...".
-[[nodiscard]] const std::vector<YamlNode>& read_list(const YamlNode& node, const std::string& what,
+[[nodiscard]] const std::vector<YamlNode>& read_list(const YamlNode& node, std::string_view what,
                                                      Diagnostics& diagnostics);
 
 }  // namespace clearance

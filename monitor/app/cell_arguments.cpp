@@ -5,6 +5,16 @@
 
 namespace clearance {
 
+namespace {
+
+Check topic_like(const std::string& example) {
+  return expecting("a topic with its namespace: " + example, [](const std::string& topic) {
+    return topic.starts_with('/') && topic.size() > 1;
+  });
+}
+
+}  // namespace
+
 // Options of the robot are keys of the robot in a cell file.
 void CellArguments::add_to(CommandLine& line, bool from_ros) {
   line.one_of = {
@@ -15,9 +25,7 @@ void CellArguments::add_to(CommandLine& line, bool from_ros) {
     line.one_of.push_back(
         {"--robot-description", &description_topic,
          "The topic of ROS 2 that has the URDF, /robot_description, instead of a file",
-         expecting("a topic with its namespace: /robot_description", [](const std::string& topic) {
-           return topic.starts_with('/') && topic.size() > 1;
-         })});
+         topic_like("/robot_description")});
   }
   line.add({
       {"--srdf", &robot.srdf,
@@ -25,6 +33,10 @@ void CellArguments::add_to(CommandLine& line, bool from_ros) {
        "shapes may touch",
        excluding("CELL")},
       packages_option(robot.packages, {"CELL"}),
+      {"--joint-states", &robot.joint_states,
+       "The topic of ROS 2 that has the robot's joints; otherwise each topic joint_states, in any "
+       "namespace",
+       topic_like("/arm/joints"), excluding("CELL")},
       {"--age-limit-ms",
        &robot.age_limit_ms,
        "An older position makes what hangs on the joint stale",

@@ -38,8 +38,8 @@ namespace client {
 // The daemon's domain, partition and network, as in its first log lines.
 class Connection {
  public:
-  // Without options, a connection uses this machine's loopback and the default partition. Its
-  // domain is that of ROS_DOMAIN_ID, or 0.
+  // Without options, a connection uses the default partition, the domain of ROS_DOMAIN_ID or 0,
+  // and loopback, or where ROS 2 is set up the network of its nodes.
   explicit Connection(const DdsOptions& options = {}, const Topics& topics = {});
   // Uses a participant that the program already has and that outlives this.
   Connection(dds_entity_t participant, const std::string& partition, const Topics& topics = {});

@@ -17,8 +17,9 @@ void DdsArguments::add_to(CommandLine& line, bool has_cell) {
        expecting("a partition of at most 255 bytes without wildcards (* ? [)", is_partition)},
       {"--interface", &interface,
        fmt::format("Network interface; lo stays on this machine, default is the network of every "
-                   "program without a configuration; otherwise {}lo",
-                   has_cell ? "the cell's, or " : "")},
+                   "program without a configuration, ros that of ROS 2's variables (idl/ROS.md); "
+                   "otherwise {}ros where ROS 2 is set up, else lo",
+                   has_cell ? "the cell's, " : "")},
       {"--peer",
        &peers,
        "Address of another machine; repeatable",

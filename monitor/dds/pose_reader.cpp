@@ -87,6 +87,7 @@ PoseReader::PoseReader(const Cell& cell, Participant& participant, MoveItMessage
   open(participant, TopicKind::kPoses);
   if (!cell.scene.variables.empty()) open(participant, TopicKind::kJointStates);
   if (intake_.hears_ros()) wait_.add(ros_.present().reader());
+  ros_.stand();
   ring_.prepare([&](PoseBatch& slot) {
     slot.samples.resize(samples_a_batch(cell));
     slot.joints.resize(joints_a_batch(cell));
@@ -103,6 +104,7 @@ void PoseReader::change(const Cell& cell) {
   const std::lock_guard lock(mutex_);
   topics_ = &cell.topics;
   intake_.change(cell);
+  ros_.stand();
 }
 
 // Cyclone copies the listener and the filter. The objects to which they point are members of this
@@ -182,8 +184,8 @@ std::string PoseReader::senders_of_joints() const {
   }
   return fmt::format(
       "there is no publisher of {} or of rt/joint_states (any namespace) on {}; there is: {}. "
-      "Nothing is heard across domains{}, networks (--interface) or from an rmw that is no DDS "
-      "(rmw_zenoh)",
+      "Nothing is heard across domains{}, networks (--interface; ros meets ROS 2 nodes, also those "
+      "with ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST) or from an rmw that is no DDS (rmw_zenoh)",
       topics_->joint_states, where_, ros_.present().listed(),
       where_.find("ROS_DOMAIN_ID") == std::string::npos ? ros_domain() : "");
 }

@@ -2,10 +2,33 @@
 
 #include <algorithm>
 
+#include "monitor/app/log_line.hpp"
+
 namespace clearance {
 
 RosReaders::~RosReaders() {
   for (const Reader& reader : readers_) dds_delete(reader.handle);
+  for (const auto& [topic, handle] : standing_) {
+    if (handle > 0) dds_delete(handle);
+  }
+}
+
+void RosReaders::stand() {
+  for (const NamedTopic& named : intake_.named()) {
+    const std::string topic = ros_dds_name(named.name);
+    const auto [place, is_new] = standing_.try_emplace({topic, named.delivery->descriptor}, 0);
+    try {
+      if (is_new) place->second = participant_.ros_reader(*named.delivery, topic);
+    } catch (const DdsError& error) {
+      log_line(lines::kInputsFailed, error.what());
+    }
+  }
+}
+
+dds_entity_t RosReaders::reader_of(const RosType& delivery, const std::string& topic) {
+  if (delivery.is_latched) return participant_.ros_reader(delivery, topic);
+  dds_entity_t& standing = standing_[{topic, delivery.descriptor}];
+  return standing > 0 ? std::exchange(standing, 0) : participant_.ros_reader(delivery, topic);
 }
 
 bool RosReaders::poll() {
@@ -21,8 +44,7 @@ bool RosReaders::poll() {
     if (std::ranges::any_of(readers_, is_there)) continue;
     RosType delivery = *wanted->delivery;
     if (is_latched) delivery.is_latched = delivery.is_reliable = true;
-    readers_.push_back(
-        {participant_.ros_reader(delivery, writer.topic), wanted->number, is_latched});
+    readers_.push_back({reader_of(delivery, writer.topic), wanted->number, is_latched});
   }
   return true;
 }

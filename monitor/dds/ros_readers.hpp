@@ -1,9 +1,12 @@
 // The readers of the ROS 2 topics that an intake wants. A reader is made when another program
-// begins to publish its topic.
+// begins to publish its topic, or before, so that publishers know of it: see stand().
 #pragma once
 
 #include <cstdint>
 #include <functional>
+#include <map>
+#include <string>
+#include <utility>
 #include <vector>
 
 #include "monitor/dds/present_topics.hpp"
@@ -30,6 +33,9 @@ class RosReaders {
   RosReaders(const RosReaders&) = delete;
   RosReaders& operator=(const RosReaders&) = delete;
 
+  // Makes readers for the topics that the cell names. Messages wait in them until poll() knows the
+  // writer.
+  void stand();
   // Makes readers for topics that have appeared. Returns true if writers have come or gone.
   bool poll();
   [[nodiscard]] const std::vector<Reader>& readers() const noexcept { return readers_; }
@@ -41,12 +47,15 @@ class RosReaders {
   void take(const Reader& reader, const Now& now, std::vector<CdrSample>& taken);
 
  private:
+  [[nodiscard]] dds_entity_t reader_of(const RosType& delivery, const std::string& topic);
   [[nodiscard]] bool is_read_by_other(const Reader& reader, std::uint64_t writer) const;
 
   Participant& participant_;
   Intake& intake_;
   PresentTopics present_;
   std::vector<Reader> readers_;
+  // Readers of stand() that no writer needed yet, by topic and type; 0: it has one of readers_.
+  std::map<std::pair<std::string, const dds_topic_descriptor_t*>, dds_entity_t> standing_;
 };
 
 // The same for any reader. Samples of a writer that does not count are dropped; empty: all count.

@@ -49,6 +49,7 @@ SensorReader::SensorReader(const Cell& cell, Participant& participant)
       names_(cell.scene),
       sent_(cell.scene.sensors.size()) {
   wait_.add(ros_.present().reader());
+  ros_.stand();
   build();
 }
 
@@ -88,6 +89,7 @@ void SensorReader::change(const Cell& cell) {
   sent_.assign(cell.scene.sensors.size(), {});
   sensors_ = std::make_unique<Sensors>(cell, *sensors_, ids_.sources());
   intake_.change(cell);
+  ros_.stand();
   cell_ = &cell;
 }
 

@@ -7,6 +7,8 @@
 #include <limits>
 #include <optional>
 #include <span>
+#include <string>
+#include <vector>
 
 #include "config/cell/cell.hpp"
 #include "monitor/inputs/pose_batch.hpp"
@@ -35,6 +37,12 @@ class Outlet {
   virtual void tell(News news) = 0;
 };
 
+// A topic of ROS 2 that a cell names, in ROS 2's spelling, and its only type.
+struct NamedTopic {
+  std::string name;
+  const RosType* delivery = nullptr;
+};
+
 // To be used by one thread.
 class Decoder {
  public:
@@ -49,6 +57,8 @@ class Decoder {
   virtual ~Decoder() = default;
   // Returns nothing if the decoder does not take the topic. The same topic gets the same answer.
   [[nodiscard]] virtual std::optional<Wanted> wants(const TopicName& topic) = 0;
+  // The topics that the decoder would take, as far as the cell names them.
+  [[nodiscard]] virtual std::vector<NamedTopic> named() const { return {}; }
   // Returns false if the bytes are not a message of the topic's type.
   [[nodiscard]] virtual bool decode(std::uint32_t port, const RawMessage& message, const Now& now,
                                     TopicCounts& counts) = 0;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "monitor/inputs/source_numbers.hpp"
@@ -73,6 +74,13 @@ std::optional<Intake::Topic> Intake::topic(const TopicName& name) {
 std::optional<Intake::Topic> Intake::topic(TopicKind kind) {
   const clearance::Topic& row = clearance::topic(kind);
   return topic({topics_->*row.name, row.type->m_typename});
+}
+
+std::vector<NamedTopic> Intake::named() const {
+  std::vector<NamedTopic> named;
+  for (const std::unique_ptr<Decoder>& decoder : decoders_)
+    std::ranges::move(decoder->named(), std::back_inserter(named));
+  return named;
 }
 
 bool Intake::take(const RawMessage& message, const Now& now) {

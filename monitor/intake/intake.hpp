@@ -72,6 +72,9 @@ class Intake final : public Outlet {
   // The same for a topic of ours, under the name that the cell gives it.
   [[nodiscard]] std::optional<Topic> topic(TopicKind kind);
 
+  // The topics of ROS 2 that the cell names.
+  [[nodiscard]] std::vector<NamedTopic> named() const;
+
   // True if the cell could use any topic of ROS 2.
   [[nodiscard]] bool hears_ros() const noexcept {
     if (options_.only_sensors) return hears_sensors_;

@@ -42,6 +42,15 @@ std::optional<Decoder::Wanted> MoveItMessages::wants(const TopicName& topic) {
   return std::nullopt;
 }
 
+std::vector<NamedTopic> MoveItMessages::named() const {
+  std::vector<NamedTopic> named;
+  for (const Input& input : kInputs) {
+    const std::string& topic = inputs_->*input.topic;
+    if (use_ && !topic.empty()) named.push_back({topic, input.delivery});
+  }
+  return named;
+}
+
 bool MoveItMessages::decode(std::uint32_t port, const RawMessage& message, const Now&,
                             TopicCounts&) {
   const Input& input = kInputs[port];

@@ -18,6 +18,7 @@ class MoveItMessages final : public Decoder {
       : inputs_(&cell.ros.moveit), use_(std::move(use)), out_(out) {}
 
   [[nodiscard]] std::optional<Wanted> wants(const TopicName& topic) override;
+  [[nodiscard]] std::vector<NamedTopic> named() const override;
   [[nodiscard]] bool decode(std::uint32_t port, const RawMessage& message, const Now& now,
                             TopicCounts& counts) override;
   void change(const Cell& cell) override { inputs_ = &cell.ros.moveit; }

@@ -57,6 +57,18 @@ std::optional<Decoder::Wanted> RosJointStates::wants(const TopicName& topic) {
   return Wanted{port, &kRosJointState};
 }
 
+// A robot without a topic of its own has the joints of /joint_states.
+std::vector<NamedTopic> RosJointStates::named() const {
+  std::vector<NamedTopic> named;
+  for (const Robot& robot : scene_->robots) {
+    const std::string topic = robot.joint_states.empty() ? std::string(kLast) : robot.joint_states;
+    const bool is_there = std::ranges::find(named, topic, &NamedTopic::name) != named.end();
+    if (!is_there && is_wanted({topic, std::string(kJointStatesType)}))
+      named.push_back({topic, &kRosJointState});
+  }
+  return named;
+}
+
 void RosJointStates::keep(std::span<const std::uint64_t> writers) {
   for (Topic& topic : topics_) {
     std::erase_if(topic.writers, [&](const auto& writer) {

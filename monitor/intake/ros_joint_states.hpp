@@ -33,6 +33,7 @@ class RosJointStates final : public Decoder {
   RosJointStates(const Scene& scene, RosJointStatesOptions options, Outlet& out);
 
   [[nodiscard]] std::optional<Wanted> wants(const TopicName& topic) override;
+  [[nodiscard]] std::vector<NamedTopic> named() const override;
   [[nodiscard]] bool decode(std::uint32_t port, const RawMessage& message, const Now& now,
                             TopicCounts& counts) override;
   void keep(std::span<const std::uint64_t> writers) override;

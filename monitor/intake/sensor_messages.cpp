@@ -32,6 +32,18 @@ std::optional<Decoder::Wanted> SensorMessages::wants(const TopicName& topic) {
                kRosCameraInfo);
 }
 
+// Points and maps have one of two types.
+std::vector<NamedTopic> SensorMessages::named() const {
+  std::vector<NamedTopic> named;
+  if (!use_) return named;
+  for (const Sensor& sensor : scene_->sensors) {
+    if (sensor.kind != SensorKind::kDepthImage) continue;
+    named.push_back({sensor.topic, &kRosImage});
+    named.push_back({sensor.camera_info, &kRosCameraInfo});
+  }
+  return named;
+}
+
 std::optional<Decoder::Wanted> SensorMessages::wants(const TopicName& topic, SensorKind kind,
                                                      std::string Sensor::*key, MessageType type,
                                                      const RosType& delivery) {

@@ -47,6 +47,7 @@ class SensorMessages final : public Decoder {
       : scene_(&cell.scene), use_(std::move(use)), out_(out) {}
 
   [[nodiscard]] std::optional<Wanted> wants(const TopicName& topic) override;
+  [[nodiscard]] std::vector<NamedTopic> named() const override;
   [[nodiscard]] bool decode(std::uint32_t port, const RawMessage& message, const Now& now,
                             TopicCounts& counts) override;
   void change(const Cell& cell) override { scene_ = &cell.scene; }

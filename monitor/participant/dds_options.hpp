@@ -7,6 +7,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace clearance {
@@ -18,8 +19,9 @@ struct DdsOptions {
   std::optional<std::uint32_t> domain = {};
   std::string partition = "";  // empty: the default one
   // The network interface. "lo": this machine only; "default": the one that Cyclone chooses for
-  // programs without a configuration.
-  std::string interface = "lo";
+  // programs without a configuration; "ros": what ROS 2's variables mean for a node. Empty: as
+  // interface_of() says.
+  std::string interface = {};
   std::vector<std::string> peers = {};  // addresses of other machines; not needed for lo
 };
 
@@ -30,6 +32,30 @@ struct Domain {
 // Returns the domain that these options mean. Throws DdsError if it is above 232, or if the
 // variable counts and is no such number.
 [[nodiscard]] Domain domain_of(const DdsOptions& options);
+
+// True when a peer, "HOST" or "HOST:PORT", is an address or a name that this machine can look up.
+[[nodiscard]] bool can_be_looked_up(const std::string& peer);
+
+// A network interface, and the variable that decided for "ros", if one did.
+struct Interface {
+  std::string name, variable = {};
+};
+// Returns the interface that these options mean. If they state none, it is "ros" where ROS 2 is set
+// up: ROS_DISTRO, ROS_AUTOMATIC_DISCOVERY_RANGE, ROS_LOCALHOST_ONLY or ROS_STATIC_PEERS is set.
+// Elsewhere it is "lo".
+[[nodiscard]] Interface interface_of(const DdsOptions& options);
+
+// The nodes that a ROS 2 node looks for, as ROS_AUTOMATIC_DISCOVERY_RANGE says.
+enum class RosRange { kOff, kLocalhost, kSubnet, kSystemDefault };
+[[nodiscard]] std::string_view name_of(RosRange range) noexcept;
+struct RosDiscovery {
+  RosRange range = RosRange::kSubnet;
+  std::vector<std::string> static_peers = {};
+};
+// Reads ROS 2's variables like Jazzy's nodes: ROS_LOCALHOST_ONLY=1 goes before the other two.
+// Throws DdsError where a node would only warn: at an unknown range, or a peer that cannot be
+// looked up.
+[[nodiscard]] RosDiscovery ros_discovery();
 
 // Says what was attempted, where, and Cyclone's reason; or what was found and expected.
 class DdsError : public std::runtime_error {

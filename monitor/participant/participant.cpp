@@ -5,13 +5,11 @@
 
 #include <fmt/format.h>
 
-#include <netdb.h>
-
-#include <algorithm>
-#include <cstdlib>
-#include <cstring>
 #include <map>
 #include <mutex>
+#include <string_view>
+
+#include "monitor/participant/domain_configuration.hpp"
 
 #if defined(__SANITIZE_THREAD__)
 // The packaged Cyclone is built without ThreadSanitizer, which therefore sees its locks but not its
@@ -40,9 +38,24 @@ Qos partition_qos(const std::string& partition) {
   return qos;
 }
 
+// USER_DATA of our own topics, which have no type hash: ROS 2 cannot read their types. A node on
+// rmw_cyclonedds warns of each endpoint without USER_DATA, and of none that has some without a
+// hash.
+constexpr std::string_view kByClearance = "by=clearance;";
+
+void set_user_data(const Qos& qos, std::string_view text) {
+  dds_qset_userdata(qos.get(), text.data(), text.size());
+}
+
+Qos own_qos() {
+  Qos qos(dds_create_qos());
+  set_user_data(qos, kByClearance);
+  return qos;
+}
+
 // Readers and writers get the same QoS, so that both sides of a topic always match.
 Qos endpoint_qos(Delivery delivery, std::int32_t depth) {
-  Qos qos(dds_create_qos());
+  Qos qos = own_qos();
   dds_qset_reliability(qos.get(), DDS_RELIABILITY_RELIABLE, kMaxBlocking);
   dds_qset_durability(qos.get(), delivery == Delivery::kLatched ? DDS_DURABILITY_TRANSIENT_LOCAL
                                                                 : DDS_DURABILITY_VOLATILE);
@@ -60,78 +73,8 @@ Qos ros_qos(const RosType& type, bool reliable, std::int32_t depth) {
   dds_qset_durability(qos.get(),
                       type.is_latched ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, depth);
-  dds_qset_userdata(qos.get(), type.user_data, std::strlen(type.user_data));
+  set_user_data(qos, type.user_data);
   return qos;
-}
-
-// A reliable reader hands out samples in order: behind a lost one, newer ones wait. Cyclone's
-// readers ask for the lost one only 100 ms later. That is longer than a deep history of a writer at
-// 1 kHz keeps it, so everything arrives late by that history. This setting makes them ask at once.
-constexpr const char* kAskAtOnce = "<NackDelay>0 ms</NackDelay>";
-
-// All packets leave through one socket. Linux keeps up to 208 KiB for a machine that does not say
-// where it is, for up to 3 s, in the send buffer, which has just that size by default: then no
-// other reader is sent anything. This asks for more, and takes what net.core.wmem_max allows: by
-// default twice as much.
-constexpr const char* kSendBuffer = "<SocketSendBufferSize max=\"8 MiB\"/>";
-
-// The largest sizes of a datagram, and of a fragment of a sample with its headers.
-struct DatagramSizes {
-  int message, fragment;
-};
-
-bool is_loopback(const DdsOptions& options) { return options.interface == "lo"; }
-bool is_default(const DdsOptions& options) { return options.interface == "default"; }
-
-// The element that chooses the network; empty for Cyclone's choice.
-std::string interface_xml(const DdsOptions& options) {
-  if (is_default(options)) return "";
-  return fmt::format(
-      "<Interfaces><NetworkInterface name=\"{}\"/></Interfaces><AllowMulticast>{}</AllowMulticast>",
-      options.interface, is_loopback(options) ? "false" : "spdp");
-}
-
-// Cyclone's default allows 9 programs on a machine without multicast.
-std::string discovery_xml(const DdsOptions& options) {
-  std::string xml;
-  if (!is_default(options)) {
-    xml =
-        "<ParticipantIndex>auto</ParticipantIndex>"
-        "<MaxAutoParticipantIndex>100</MaxAutoParticipantIndex>";
-  }
-  std::string peers;
-  if (is_loopback(options)) peers = "<Peer Address=\"127.0.0.1\"/>";
-  for (const std::string& peer : options.peers)
-    peers += fmt::format("<Peer Address=\"{}\"/>", peer);
-  return peers.empty() ? xml : xml + fmt::format("<Peers>{}</Peers>", peers);
-}
-
-// Omits empty elements: Cyclone accepts them, but a person has to read the text.
-std::string element(const char* name, const std::string& content) {
-  return content.empty() ? "" : fmt::format("<{0}>{1}</{0}>", name, content);
-}
-
-// Says how other programs reach this one, for the log. The proposed settings leave out datagram
-// sizes, which clients need not share.
-std::string reach(const DdsOptions& options, std::uint32_t domain) {
-  const std::string on = fmt::format(
-      "in domain {} (ROS_DOMAIN_ID){}", domain,
-      options.partition.empty()
-          ? ""
-          : fmt::format(", in partition {}, which ROS 2 nodes never are", options.partition));
-  if (is_default(options) && options.peers.empty())
-    return fmt::format("every program without a configuration reaches it, {}", on);
-  return fmt::format(
-      "other programs reach it with CYCLONEDDS_URI='<CycloneDDS><Domain>{}{}</Domain></CycloneDDS>'"
-      ", {}",
-      element("General", interface_xml(options)), element("Discovery", discovery_xml(options)), on);
-}
-
-// Cyclone's default of 14,720 B cuts a batch of 100 poses in two on loopback, and needs ten IP
-// fragments on a network.
-DatagramSizes datagram_sizes(const DdsOptions& options) {
-  return is_loopback(options) ? DatagramSizes{.message = 65'000, .fragment = 64'000}
-                              : DatagramSizes{.message = 1'400, .fragment = 1'300};
 }
 
 // A process can configure a domain once: its participants share the domain, with the options of the
@@ -153,43 +96,8 @@ std::shared_ptr<const dds_entity_t> open_domain(const DdsOptions& options, std::
   return domain;
 }
 
-std::string describe_partition(const std::string& partition) {
-  return partition.empty() ? "default partition" : fmt::format("partition {}", partition);
-}
-
-std::string describe(const DdsOptions& options, const Domain& domain) {
-  return fmt::format("domain {}{}, {}, interface {}, datagrams of up to {} B{}", domain.id,
-                     domain.is_of_ros ? " (of ROS_DOMAIN_ID)" : "",
-                     describe_partition(options.partition),
-                     is_default(options) ? "as Cyclone chooses" : options.interface,
-                     datagram_sizes(options).message,
-                     std::getenv("CYCLONEDDS_URI") == nullptr ? "" : ", then CYCLONEDDS_URI");
-}
-
-// "HOST", "HOST:PORT", "[V6]:PORT" or "V6".
-std::string host_of(const std::string& peer) {
-  if (peer.starts_with('[')) return peer.substr(1, peer.find(']') - 1);
-  const bool has_port = std::count(peer.begin(), peer.end(), ':') == 1;
-  return has_port ? peer.substr(0, peer.find(':')) : peer;
-}
-
 }  // namespace
 
-std::string domain_configuration(const DdsOptions& options) {
-  const DatagramSizes sizes = datagram_sizes(options);
-  std::string xml = fmt::format(
-      "<CycloneDDS><Domain id=\"any\"><General>{}"
-      "<MaxMessageSize>{}B</MaxMessageSize><FragmentSize>{}B</FragmentSize></General>"
-      "{}{}</Domain></CycloneDDS>",
-      interface_xml(options), sizes.message, sizes.fragment,
-      element("Discovery", discovery_xml(options)),
-      element("Internal", std::string(kAskAtOnce) + kSendBuffer));
-  // The person's own settings for Cyclone come last, so they win.
-  if (const char* uri = std::getenv("CYCLONEDDS_URI")) xml += std::string(",") + uri;
-  return xml;
-}
-
-// Cyclone keeps the facts while the writer matches. This function frees the copy.
 WriterFacts writer_facts(dds_entity_t reader, dds_instance_handle_t writer) {
   dds_builtintopic_endpoint_t* const endpoint = dds_get_matched_publication_data(reader, writer);
   if (endpoint == nullptr) return {};
@@ -247,13 +155,6 @@ std::string why_unheard(dds_entity_t reader) {
                      status.last_policy_id);
 }
 
-bool can_be_looked_up(const std::string& peer) {
-  addrinfo* found = nullptr;
-  if (getaddrinfo(host_of(peer).c_str(), nullptr, nullptr, &found) != 0) return false;
-  freeaddrinfo(found);
-  return true;
-}
-
 dds_entity_t check_dds(dds_entity_t code, const std::string& attempted) {
   if (code < 0) throw DdsError(attempted, code);
   return code;
@@ -262,8 +163,8 @@ dds_entity_t check_dds(dds_entity_t code, const std::string& attempted) {
 // Publisher and subscriber have the partition: endpoints of other partitions never match.
 Participant::Participant(const DdsOptions& options) {
   const Domain domain = domain_of(options);
-  where_ = describe(options, domain);
-  how_to_reach_ = reach(options, domain.id);
+  where_ = where_joined(options, domain);
+  how_to_reach_ = clearance::how_to_reach(options, domain.id);
   domain_ = open_domain(options, domain.id);
   participant_ = check_dds(dds_create_participant(domain.id, nullptr, nullptr),
                            fmt::format("joining {}", where_));
@@ -328,7 +229,7 @@ dds_entity_t Participant::reader_of_several(TopicKind kind, const std::string& n
 // A late joiner needs no history, and another sample follows a lost one.
 dds_entity_t Participant::reader_of_others(const std::string& name,
                                            const dds_listener_t* listener) {
-  const Qos qos(dds_create_qos());
+  const Qos qos = own_qos();
   dds_qset_reliability(qos.get(), DDS_RELIABILITY_BEST_EFFORT, 0);
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, 1);
   dds_qset_ignorelocal(qos.get(), DDS_IGNORELOCAL_PARTICIPANT);
@@ -370,9 +271,7 @@ dds_entity_t Participant::writer(TopicKind kind, const std::string& name,
   } else if (options.process_lease_ns > 0) {
     dds_qset_liveliness(qos.get(), DDS_LIVELINESS_AUTOMATIC, options.process_lease_ns);
   }
-  if (!options.user_data.empty()) {
-    dds_qset_userdata(qos.get(), options.user_data.data(), options.user_data.size());
-  }
+  if (!options.user_data.empty()) set_user_data(qos, options.user_data);
   return check_dds(
       dds_create_writer(publisher_, make_topic(*row.type, name), qos.get(), options.listener),
       fmt::format("making a writer of {}", name));

@@ -18,16 +18,6 @@ namespace clearance {
 // Returns a handle or count; throws DdsError when it is negative.
 dds_entity_t check_dds(dds_entity_t code, const std::string& attempted);
 
-// True when a peer, "HOST" or "HOST:PORT", is an address or a name that this machine can look up.
-[[nodiscard]] bool can_be_looked_up(const std::string& peer);
-
-// Cyclone's configuration for these options, as XML. Loopback carries a whole batch in one datagram
-// of up to 65,000 B. All other networks get datagrams that fit an Ethernet frame. IP would fragment
-// larger ones: every lost fragment costs the whole datagram, and holds the kernel's reassembly
-// memory for 30 s. Measured with 10 % loss and reports above 14,720 B: of 16,000 reports, 2,984
-// arrived with Cyclone's own sizes and 14,902 with these.
-[[nodiscard]] std::string domain_configuration(const DdsOptions& options);
-
 // Options of a writer that the table of topics does not contain.
 struct WriterOptions {
   // Every write also asserts that the writer is alive. After this time without a write, readers

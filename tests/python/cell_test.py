@@ -264,7 +264,7 @@ def test_a_cell_tells_its_names(planar):
     assert planar.zones == ["stop"] and set(planar.objects) >= {"wall", "ball", "upper", "lower"}
     np.testing.assert_array_equal(planar.joint_limits, [[-3, 3], [-3, 3]])
     assert planar.pairs == planar.published_pairs and len(planar.pairs) == 4
-    assert planar.rate_hz == 200 and planar.interface == "lo" and planar.revision != 0
+    assert planar.rate_hz == 200 and planar.interface is None and planar.revision != 0
 
 
 BALL = {"ball": [1.5, 0.5, 1.0, 0, 0, 0, 1]}

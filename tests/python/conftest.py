@@ -10,7 +10,8 @@ import pytest
 import clearance
 
 # Tests state their domains, and programs that state none join domain 0.
-os.environ.pop("ROS_DOMAIN_ID", None)
+for name in ("ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE", "ROS_LOCALHOST_ONLY", "ROS_STATIC_PEERS", "ROS_DISTRO"):
+    os.environ.pop(name, None)
 SOURCE = pathlib.Path(__file__).resolve().parents[2]
 # Each daemon has a partition alone; the network is loopback. Domains below 100 avoid the ports that the
 # kernel assigns.

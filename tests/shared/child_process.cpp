@@ -18,8 +18,9 @@ namespace clearance::test {
 namespace {
 
 void set_up(const ChildOptions& options, int output) {
-  unsetenv("CYCLONEDDS_URI");
-  unsetenv("ROS_DOMAIN_ID");
+  for (const char* name : {"CYCLONEDDS_URI", "ROS_DOMAIN_ID", "ROS_AUTOMATIC_DISCOVERY_RANGE",
+                           "ROS_LOCALHOST_ONLY", "ROS_STATIC_PEERS", "ROS_DISTRO"})
+    unsetenv(name);
   for (const auto& [name, value] : options.environment) setenv(name.c_str(), value.c_str(), 1);
   if (options.most_file_bytes) {
     const rlimit limit{*options.most_file_bytes, *options.most_file_bytes};

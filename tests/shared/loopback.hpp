@@ -21,6 +21,7 @@ namespace clearance::test {
   const auto pid = static_cast<std::uint32_t>(getpid());
   DdsOptions dds;
   dds.domain = 1 + pid % 99;
+  dds.interface = "lo";
   dds.partition = "test-" + std::to_string(pid) + "-" + std::to_string(++calls);
   return dds;
 }

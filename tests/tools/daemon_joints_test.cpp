@@ -247,6 +247,22 @@ TEST_F(DaemonJoints, OfARobotNeedNoCellFile) {
   EXPECT_TRUE(daemon->told("robot-note", {"scara", neighbours})) << daemon->output();
 }
 
+TEST_F(DaemonJoints, OfARobotWithoutACellFileMayHaveATopicOfAnyName) {
+  write_text(folder / "scara.urdf", kScaraUrdf);
+  const std::vector<std::string> robot = {"--urdf", folder / "scara.urdf", "--joint-states"};
+  daemon.emplace(kDaemon, with(with(robot, {"/scara/measured"}), dds_arguments(dds)));
+  RosJoints joints(client, "rt/scara/measured");
+  ASSERT_TRUE(joints.is_heard());
+  ASSERT_TRUE(eventually([&] {
+    joints.send(kNames, {0, 0, 0.1});
+    std::this_thread::sleep_for(std::chrono::milliseconds(5));
+    return daemon->told("joints-heard", {"3 joints of scara"});
+  })) << daemon->output();
+  ChildProcess refused(kDaemon, with(robot, {"measured"}));
+  EXPECT_EQ(refused.wait(), 2);
+  EXPECT_TRUE(refused.wrote("a topic with its namespace: /arm/joints")) << refused.output();
+}
+
 TEST_F(DaemonJoints, OfADescriptionThatRos2PublishesNeedNoFileAtAll) {
   const ChildOptions cache{.environment = {{"XDG_CACHE_HOME", (folder / "cache").string()}}};
   daemon.emplace(kDaemon, with({"--robot-description", "/robot_description"}, dds_arguments(dds)),

@@ -26,9 +26,10 @@ ifreq named(const char* name) {
   return request;
 }
 
-bool bring_up(int socket, const char* name) {
+// Linux says of lo that it has no multicast.
+bool bring_up(int socket, const char* name, short multicast = 0) {
   ifreq request = named(name);
-  request.ifr_flags = IFF_UP | IFF_RUNNING | IFF_MULTICAST;
+  request.ifr_flags = static_cast<short>(IFF_UP | IFF_RUNNING | multicast);
   return ioctl(socket, SIOCSIFFLAGS, &request) == 0;
 }
 
@@ -51,7 +52,8 @@ std::string enter_namespace(int number, int& tap) {
   const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
   const bool up = bring_up(socket, "lo") &&
                   set_address(socket, SIOCSIFADDR, "10.77.0." + std::to_string(number)) &&
-                  set_address(socket, SIOCSIFNETMASK, "255.255.255.0") && bring_up(socket, "eth0");
+                  set_address(socket, SIOCSIFNETMASK, "255.255.255.0") &&
+                  bring_up(socket, "eth0", IFF_MULTICAST);
   const std::string refusal = up ? "" : failed("the TAP device cannot be configured");
   close(socket);
   return refusal;

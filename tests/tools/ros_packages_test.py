@@ -18,6 +18,33 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
 OURS = ROOT / "tools/ros2/clearance_ros"
 MESSAGES = BUILD / "idl/clearance_msgs"
+SOURCES = ROOT / "tools/ros2/clearance"
+
+# Packages of Debian that tools/setup installs, and the keys that rosdep has for them; None: it has none.
+KEYS = {
+    "cyclonedds-dev": "cyclonedds",
+    "cyclonedds-tools": "cyclonedds",
+    "libassimp-dev": "assimp",
+    "libboost-dev": "libboost-dev",
+    "libcli11-dev": "cli11",
+    "libeigen3-dev": "eigen",
+    "libfmt-dev": "fmt",
+    "libgmp-dev": "libgmp",
+    "libhwy-dev": None,
+    "liblz4-dev": "liblz4-dev",
+    "libncurses-dev": "libncurses-dev",
+    "libspdlog-dev": "spdlog",
+    "libsqlite3-dev": "libsqlite3-dev",
+    "libsystemd-dev": "libsystemd-dev",
+    "libtinyxml2-dev": "tinyxml2",
+    "libyaml-cpp-dev": "yaml-cpp",
+    "libzstd-dev": "libzstd-dev",
+    "nlohmann-json3-dev": "nlohmann-json-dev",
+    "prometheus-cpp-dev": None,
+    "python3": "python3",
+    "zlib1g-dev": "zlib",
+}
+OF_COLCON = {"g++", "ninja-build"}  # or of another compiler and build program
 
 
 class Named:
@@ -27,64 +54,149 @@ class Named:
         self.args, self.kwargs = args, kwargs
 
 
-def launch_file():
+GIVEN = {}  # LaunchConfiguration(...).perform(): arguments by name
+MISSING = {"rviz2"}  # packages that this ROS 2 does not have
+
+
+def prefix(package):
+    """get_package_prefix()"""
+    if package in MISSING:
+        raise LookupError(package)
+
+
+def launch_file(name="clearance"):
     for module, names in {
+        "ament_index_python": [],
+        "ament_index_python.packages": [],
         "launch": ["LaunchDescription"],
-        "launch.actions": ["DeclareLaunchArgument", "ExecuteProcess", "OpaqueFunction"],
-        "launch.conditions": ["IfCondition"],
+        "launch.actions": ["DeclareLaunchArgument", "ExecuteProcess", "GroupAction", "IncludeLaunchDescription", "OpaqueFunction", "Shutdown"],
+        "launch.launch_description_sources": ["PythonLaunchDescriptionSource"],
         "launch.substitutions": ["LaunchConfiguration"],
         "launch_ros": [],
         "launch_ros.actions": ["Node"],
     }.items():
         sys.modules[module] = types.ModuleType(module)
-        for name in names:
-            setattr(sys.modules[module], name, type(name, (Named,), {}))
-    spec = importlib.util.spec_from_file_location("launched", OURS / "launch/clearance.launch.py")
+        for each in names:
+            setattr(sys.modules[module], each, type(each, (Named,), {}))
+    sys.modules["ament_index_python.packages"].get_package_prefix = prefix
+    sys.modules["launch.substitutions"].LaunchConfiguration.perform = lambda self, context: GIVEN[self.args[0]]
+    spec = importlib.util.spec_from_file_location("launched", OURS / f"launch/{name}.launch.py")
     module = importlib.util.module_from_spec(spec)
     spec.loader.exec_module(module)
     return module
 
 
-def defaults(module):
-    return {name: default for name, default, _ in module.ARGUMENTS}
+def started(**given):
+    """What the launch file starts for these arguments."""
+    module = launch_file()
+    GIVEN.clear()
+    GIVEN.update({name: default for name, default, _ in module.ARGUMENTS}, **given)
+    return module.start(None)
+
+
+def command_line(**given):
+    return started(**given)[-1].kwargs["cmd"]
 
 
 class RosPackages(unittest.TestCase):
-    def check(self, given):
-        line = launch_file().command_line({**defaults(launch_file()), **given})
+    def check(self, **given):
+        line = command_line(cell=str(ROOT / "config/cells/mcintyre.yaml"), **given)
         return subprocess.run([BUILD / "bin" / line[0], *line[1:], "--check"], capture_output=True, text=True, timeout=120)
 
     def test_the_launch_file_makes_command_lines_that_the_daemon_takes(self):
         with tempfile.TemporaryDirectory() as folder:
-            given = {"cell": str(ROOT / "config/cells/mcintyre.yaml"), "domain": "7", "priority": "80"}
-            done = self.check({**given, "outputs": "messages,markers", "record": f"{folder}/run.mcap"})
+            network = {"interface": "lo", "domain": "7", "peer": "127.0.0.1,localhost"}
+            clients = {"commands": "planner,operator", "questions": "planner"}
+            rest = {"priority": "80", "partner": "left", "outputs": "messages,markers", "record": f"{folder}/run.mcap"}
+            done = self.check(**network, **clients, **rest)
         self.assertEqual(done.returncode, 0, done.stderr)
 
     def test_a_wrong_argument_is_refused_by_the_daemon(self):
-        done = self.check({"cell": str(ROOT / "config/cells/mcintyre.yaml"), "outputs": "marker"})
-        self.assertNotEqual(done.returncode, 0)
+        for wrong in ({"outputs": "marker"}, {"partner": "left and right"}, {"domain": "300"}):
+            self.assertNotEqual(self.check(**wrong).returncode, 0, wrong)
+
+    def test_an_argument_with_several_names_repeats_its_option(self):
+        line = command_line(cell="cell.yaml", peer="10.0.0.1,10.0.0.2", outputs="", interface="lo")
+        self.assertEqual(line, ["clearanced", "cell.yaml", "--interface", "lo", "--peer", "10.0.0.1", "--peer", "10.0.0.2"])
 
     def test_the_robot_description_takes_the_place_of_a_cell(self):
-        module = launch_file()
-        line = module.command_line({**defaults(module), "srdf": "r.srdf"})
-        self.assertEqual(line[1:5], ["--robot-description", "/robot_description", "--srdf", "r.srdf"])
+        robot = {"srdf": "r.srdf", "package": "arm=/opt/arm,tool=/opt/tool", "joint_states": "/arm/joints"}
+        line = command_line(outputs="markers", **robot)
+        self.assertEqual(line[1:9], ["--robot-description", "/robot_description", "--srdf", "r.srdf", "--package", "arm=/opt/arm", "--package", "tool=/opt/tool"])
+        self.assertEqual(line[9:], ["--joint-states", "/arm/joints", "--interface", "ros", "--ros2", "markers"])
         options = subprocess.run([BUILD / "bin/clearanced", "--help"], capture_output=True, text=True, check=True).stdout
         for option in (each for each in line if each.startswith("--")):
-            self.assertIn(option, options)
+            self.assertIn(f"  {option} TEXT", options)
+
+    def test_a_launch_file_without_rviz2_starts_nothing(self):
+        self.assertEqual(len(started(cell="cell.yaml")), 1)
+        with self.assertRaises(LookupError):
+            started(cell="cell.yaml", rviz="true")
 
     def test_the_files_that_the_launch_file_names_exist(self):
-        nodes = [each for each in launch_file().generate_launch_description().args[0] if type(each).__name__ == "Node"]
+        MISSING.clear()
+        self.addCleanup(MISSING.add, "rviz2")
+        nodes = started(cell="cell.yaml", rviz="true", aggregator="true")[:-1]
         files = [path for node in nodes for path in node.kwargs.get("arguments", []) + node.kwargs.get("parameters", []) if "/" in path]
         self.assertEqual(len(files), 2)
         for path in files:
             self.assertTrue(pathlib.Path(path).is_file(), path)
 
+    def after(self, status, **given):
+        """What the launch file does once clearanced has ended with this status."""
+        return started(cell="cell.yaml", **given)[-1].kwargs["on_exit"](types.SimpleNamespace(returncode=status), None)
+
+    def test_the_launch_ends_with_the_daemon_and_tells_its_error(self):
+        self.assertEqual([type(each).__name__ for each in self.after(0)], ["Shutdown"])
+        for status in (1, 2, 3, 4, 5, -9):
+            with self.assertRaisesRegex(RuntimeError, f"status {status};"):
+                self.after(status)
+
+    def test_a_partner_is_started_again_unless_it_would_end_alike(self):
+        self.assertTrue(started(cell="cell.yaml", partner="left")[-1].kwargs["respawn"])
+        for status in (0, 1, 4, 5, -9):
+            self.assertIsNone(self.after(status, partner="left"))
+        for status in (2, 3):
+            with self.assertRaises(RuntimeError):
+                self.after(status, partner="left")
+
+    def test_partners_have_names_and_recordings_of_their_own_and_one_rviz2(self):
+        one = launch_file()
+        actions = launch_file("partners").generate_launch_description().args[0]
+        declared = {each.args[0] for each in actions if type(each).__name__ == "DeclareLaunchArgument"}
+        left, right = (dict(each.args[0][0].kwargs["launch_arguments"]) for each in actions if type(each).__name__ == "GroupAction")
+        self.assertEqual((left["partner"], right["partner"]), ("left", "right"))
+        self.assertEqual((left["record"].args, right["record"].args), (("record_left",), ("record_right",)))
+        self.assertLessEqual({left["record"].args[0], right["record"].args[0]}, declared)
+        self.assertEqual((right["rviz"], right["aggregator"]), ("false", "false"))
+        self.assertNotIn("rviz", left)
+        self.assertLessEqual({*left, *right}, {name for name, _, _ in one.ARGUMENTS})
+
     def test_each_package_has_the_name_of_its_folder_and_one_version(self):
-        found = [xml.parse(folder / "package.xml").getroot() for folder in (OURS, MESSAGES)]
-        self.assertEqual([each.find("name").text for each in found], ["clearance_ros", "clearance_msgs"])
-        self.assertEqual(found[0].find("version").text, found[1].find("version").text)
-        for folder in (OURS, MESSAGES):
+        folders = (OURS, MESSAGES, SOURCES)
+        found = [xml.parse(folder / "package.xml").getroot() for folder in folders]
+        self.assertEqual([each.find("name").text for each in found], [folder.name for folder in folders])
+        self.assertEqual(len({each.find("version").text for each in found}), 1)
+        for folder in folders:
             self.assertIn(f"project({folder.name}", (folder / "CMakeLists.txt").read_text())
+
+    def test_the_package_of_the_sources_needs_what_setup_installs(self):
+        needed = re.search(r"^packages=\((.*?)\)$", (ROOT / "tools/setup").read_text(), re.MULTILINE | re.DOTALL)
+        keys = {KEYS[name] for name in set(needed[1].split()) - OF_COLCON - {"cmake"}}
+        package = xml.parse(SOURCES / "package.xml").getroot()
+        self.assertEqual({each.text for kind in ("build_depend", "depend") for each in package.iter(kind)}, keys - {None})
+        told = (SOURCES / "package.xml").read_text()
+        for name in (name for name, key in KEYS.items() if key is None):
+            self.assertIn(name, told)
+
+    def test_the_package_of_the_sources_is_a_project_that_builds_them(self):
+        with tempfile.TemporaryDirectory() as folder:
+            done = subprocess.run(["cmake", "-S", SOURCES, "-B", folder, "-DCLEARANCE_PYTHON=OFF"], capture_output=True, text=True)
+            self.assertEqual(done.returncode, 0, done.stderr)
+            targets = subprocess.run(["cmake", "--build", folder, "--target", "help"], capture_output=True, text=True, check=True).stdout
+        for target in ("clearanced", "clearance-replay", "clearance_client"):
+            self.assertRegex(targets, rf"(?m)\b{target}$")
+        self.assertNotIn("core_tests", targets)
 
     def test_every_message_is_listed_and_every_listed_message_exists(self):
         listed = re.findall(r"msg/\w+\.msg", (MESSAGES / "CMakeLists.txt").read_text())

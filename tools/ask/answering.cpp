@@ -200,7 +200,8 @@ void Answering::write(AskedMotion& motion, std::ostream& out) {
     expect(motion);
   } else {
     if (bad_++ == 0) print(stderr, "{}:{}: {}\n", options_.motions, motion.where, motion.error);
-    const bool is_of_bag = motion.id.is_string() && motion.where == motion.id;
+    const bool is_of_bag =
+        motion.id.is_string() && motion.id.get_ref<const std::string&>() == motion.where;
     if (is_of_bag) {
       line["id"] = motion.id;
     } else {

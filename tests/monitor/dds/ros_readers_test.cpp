@@ -3,6 +3,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
+#include <set>
+#include <string>
+
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/wire/convert.hpp"
 #include "tests/monitor/tick/scara_cell.hpp"
@@ -75,6 +80,34 @@ TEST_F(RosReadersTest, OfOneInstantAreWhatOurOwnTopicSays) {
   EXPECT_TRUE(test::eventually([&] { return !inputs.refused_sources().empty(); }));
   EXPECT_EQ(next().source.view(), "/joint_states#2") << "a writer that uses the name of another";
   EXPECT_EQ(inputs.refused_sources().size(), 1u);
+}
+
+// The topics that have a reader of another program, as 'ros2 topic info' knows them.
+std::set<std::string> topics_with_readers(Participant& participant) {
+  const dds_entity_t reader =
+      dds_create_reader(participant.handle(), DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION, nullptr, nullptr);
+  std::set<std::string> topics;
+  std::array<void*, 64> samples{};
+  std::array<dds_sample_info_t, 64> infos{};
+  const dds_return_t count = dds_take(reader, samples.data(), infos.data(), 64, 64);
+  for (std::size_t i = 0; i < static_cast<std::size_t>(std::max(count, 0)); ++i) {
+    if (infos[i].valid_data)
+      topics.insert(static_cast<const dds_builtintopic_endpoint_t*>(samples[i])->topic_name);
+  }
+  if (count > 0) dds_return_loan(reader, samples.data(), count);
+  dds_delete(reader);
+  return topics;
+}
+
+TEST_F(RosReadersTest, StandBeforeAnyPublisherAndLoseNoMessageOfTheFirst) {
+  EXPECT_TRUE(test::eventually([&] {
+    const std::set<std::string> topics = topics_with_readers(robot);
+    return topics.contains("rt/joint_states") && topics.contains("rt/left/joint_states");
+  }));
+  test::RosJoints joints(robot);
+  ASSERT_TRUE(joints.is_heard());
+  joints.send({"right_push"}, {0.1});
+  EXPECT_EQ(positions(next()), (Positions{{"right_push", 0.1}}));
 }
 
 TEST_F(RosReadersTest, ThatNobodySendsAreSaidToBeMissingWithWhatIsThere) {

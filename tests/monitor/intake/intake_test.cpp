@@ -1,6 +1,7 @@
 // Inputs on this project's own topics: which sources are admitted, and what is reported about them.
 #include "monitor/intake/intake.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <array>
@@ -43,6 +44,30 @@ TEST_F(IntakeTest, GivesEveryBatchAsItWasSent) {
   EXPECT_EQ(batch.samples[2].stamp_ns, heard.now.realtime_ns);
   EXPECT_EQ(batch.samples[2].world_from_object.position, Vec3(0, 0, 1));
   EXPECT_EQ(tally().batches, 1u);
+}
+
+// Points and maps have one of two types: which, their publisher shows.
+TEST(Intake, NamesTheTopicsOfRos2ThatItsCellNames) {
+  Cell cell = two_scara_arms();
+  Sensor eye, scan;
+  eye.topic = "/eye/image";
+  eye.camera_info = "/eye/info";
+  scan.kind = SensorKind::kPoints;
+  scan.topic = "/scan";
+  cell.scene.sensors = {eye, scan};
+  cell.ros.moveit.collision_object = "/collision_object";
+  const auto names = [&cell](IntakeOptions options) {
+    std::vector<std::string> found;
+    const Heard heard(cell, std::move(options));
+    for (const NamedTopic& topic : heard.intake.named()) found.push_back(topic.name);
+    return found;
+  };
+  using testing::UnorderedElementsAre;
+  EXPECT_THAT(names({}), UnorderedElementsAre("/left/joint_states", "/joint_states"));
+  EXPECT_THAT(names({.use_scene = [](const moveit::RawScene&) {}}),
+              UnorderedElementsAre("/left/joint_states", "/joint_states", "/collision_object"));
+  EXPECT_THAT(names({.use_sensor = [](const RawSensorMessage&) {}, .only_sensors = true}),
+              UnorderedElementsAre("/eye/image", "/eye/info"));
 }
 
 TEST_F(IntakeTest, KnowsOurTopicsByTheirNamesAndTypes) {

@@ -4,10 +4,14 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <optional>
 #include <string>
+#include <string_view>
+#include <utility>
 
+#include "monitor/participant/domain_configuration.hpp"
 #include "tests/shared/loopback.hpp"
 
 namespace clearance {
@@ -78,6 +82,49 @@ TEST_F(RosDomain, IsRefusedWhereItIsNone) {
                                           "'; expected a domain, 0 to 232"));
     }
   }
+}
+
+// The number of this participant's endpoints in a topic of discovery, and of those without
+// USER_DATA.
+std::pair<int, int> endpoints(const Participant& of, dds_entity_t discovery) {
+  dds_guid_t own{};
+  dds_get_guid(of.handle(), &own);
+  const dds_entity_t reader = dds_create_reader(of.handle(), discovery, nullptr, nullptr);
+  std::pair<int, int> count{0, 0};
+  void* sample = nullptr;
+  dds_sample_info_t info{};
+  while (dds_take(reader, &sample, &info, 1, 1) == 1) {
+    const auto& endpoint = *static_cast<const dds_builtintopic_endpoint_t*>(sample);
+    void* bytes = nullptr;
+    std::size_t size = 0;
+    const bool has_data = dds_qget_userdata(endpoint.qos, &bytes, &size) && size > 0;
+    dds_free(bytes);
+    const bool is_of_discovery = std::string_view(endpoint.topic_name).starts_with("DCPS");
+    if (!is_of_discovery && std::ranges::equal(endpoint.participant_key.v, own.v)) {
+      ++count.first;
+      count.second += has_data ? 0 : 1;
+    }
+    dds_return_loan(reader, &sample, 1);
+  }
+  dds_delete(reader);
+  return count;
+}
+
+TEST(Participant, GivesEveryEndpointUserDataSoThatNoRosNodeWarnsOfIt) {
+  Participant participant(test::own_dds());
+  for (const Topic& row : kTopics) {
+    participant.reader(row.kind, Topics().*row.name);
+    participant.reader_of_several(row.kind, Topics().*row.name);
+    participant.partner_reader(row.kind, Topics().*row.name);
+    participant.writer(row.kind, Topics().*row.name);
+  }
+  participant.reader_of_others("clearance/distances", nullptr);
+  participant.ros_reader(kRosJointState, "rt/joint_states");
+  participant.ros_writer(kRosFloat64, "rt/clearance/minimum_distance");
+  const int topics = static_cast<int>(kTopics.size());
+  EXPECT_EQ(endpoints(participant, DDS_BUILTIN_TOPIC_DCPSPUBLICATION), std::pair(topics + 1, 0));
+  EXPECT_EQ(endpoints(participant, DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION),
+            std::pair(3 * topics + 2, 0));
 }
 
 TEST(Participant, SaysHowLargeItsDatagramsAre) {

@@ -97,6 +97,11 @@ py::list pairs_of(const CellObject& self, bool published_only) {
   return pairs;
 }
 
+std::optional<std::string> stated_interface(const CellObject& cell) {
+  const std::string& stated = cell.cell().interface;
+  return stated.empty() ? std::nullopt : std::optional(stated);
+}
+
 }  // namespace
 
 py::tuple CellObject::pair_names(const ObjectPair& pair) const {
@@ -171,9 +176,8 @@ file: the name in messages; paths in the cell are relative to its folder. Raises
           "Of DDS; None: that of ROS_DOMAIN_ID, or 0.")
       .def_property_readonly(
           "partition", [](const CellObject& c) { return c.cell().partition; }, "Of DDS.")
-      .def_property_readonly(
-          "interface", [](const CellObject& c) { return c.cell().interface; },
-          "The network of DDS.")
+      .def_property_readonly("interface", &stated_interface,
+                             "The network of DDS; None: ros where ROS 2 is set up, else lo.")
       .def_property_readonly(
           "yaml", [](const CellObject& c) { return c.cell().yaml; }, "The text.")
       .def_property_readonly("notes", &CellObject::notes, "What the reader told, a line each.")

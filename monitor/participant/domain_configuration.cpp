@@ -1,0 +1,220 @@
+// Configures Cyclone by text, since CYCLONEDDS_URI is text, too, and has the last word.
+#include "monitor/participant/domain_configuration.hpp"
+
+#include <fmt/format.h>
+
+#include <ifaddrs.h>
+#include <net/if.h>
+#include <unistd.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <iterator>
+#include <string_view>
+#include <vector>
+
+namespace clearance {
+namespace {
+
+// A reliable reader hands out samples in order: behind a lost one, newer ones wait. Cyclone's
+// readers ask for the lost one only 100 ms later. That is longer than a deep history of a writer at
+// 1 kHz keeps it, so everything arrives late by that history. This setting makes them ask at once.
+constexpr const char* kAskAtOnce = "<NackDelay>0 ms</NackDelay>";
+
+// All packets leave through one socket. Linux keeps up to 208 KiB for a machine that does not say
+// where it is, for up to 3 s, in the send buffer, which has just that size by default: then no
+// other reader is sent anything. This asks for more, and takes what net.core.wmem_max allows: by
+// default twice as much.
+constexpr const char* kSendBuffer = "<SocketSendBufferSize max=\"8 MiB\"/>";
+
+// Cyclone's default allows 9 programs on a machine without multicast.
+constexpr const char* kIndices =
+    "<ParticipantIndex>auto</ParticipantIndex>"
+    "<MaxAutoParticipantIndex>100</MaxAutoParticipantIndex>";
+
+// The card of every program without a configuration, and lo for programs that know only lo. Cyclone
+// takes multicast from all cards unless each has it; Linux denies that lo has it, and carries it.
+constexpr const char* kCardAndLo =
+    "<NetworkInterface autodetermine=\"true\"/><NetworkInterface name=\"lo\" multicast=\"true\" "
+    "priority=\"-1\"/>";
+constexpr const char* kLo = "<NetworkInterface name=\"lo\"/>";
+
+// The programs that are met, and the cards, in Cyclone's terms.
+struct Network {
+  std::string interfaces = {}, multicast = {};  // empty: Cyclone's choice
+  std::vector<std::string> peers = {};
+  std::string tag = {};  // only programs of one tag meet
+};
+
+// The largest sizes of a datagram, and of a fragment of a sample with its headers.
+struct DatagramSizes {
+  int message, fragment;
+};
+
+// True if a card other than lo is up and has an IPv4 address.
+bool has_card() {
+  ifaddrs* first = nullptr;
+  if (getifaddrs(&first) != 0) return false;
+  bool found = false;
+  for (const ifaddrs* each = first; each != nullptr; each = each->ifa_next) {
+    found = found || (each->ifa_addr != nullptr && each->ifa_addr->sa_family == AF_INET &&
+                      (each->ifa_flags & IFF_UP) != 0 && (each->ifa_flags & IFF_LOOPBACK) == 0);
+  }
+  freeifaddrs(first);
+  return found;
+}
+
+// Listens on lo, too. Tried with Cyclone 0.10.2 and the settings of Jazzy's and Humble's nodes:
+// SUBNET meets SUBNET, LOCALHOST, ROS_LOCALHOST_ONLY=1 of either and programs on lo.
+Network network_of_ros(const RosDiscovery& ros) {
+  if (ros.range == RosRange::kSystemDefault) return {};
+  if (ros.range == RosRange::kOff)
+    return {.multicast = "false", .tag = fmt::format("ros_discovery_off_{}", getpid())};
+  Network network{.interfaces = kLo, .multicast = "false", .peers = ros.static_peers};
+  if (has_card()) {
+    network.interfaces = kCardAndLo;
+    if (ros.range == RosRange::kSubnet) network.multicast = "spdp";
+  }
+  network.peers.insert(network.peers.begin(), "127.0.0.1");
+  return network;
+}
+
+Network network_of(const DdsOptions& options) {
+  const std::string name = interface_of(options).name;
+  Network network;
+  if (name == "ros") {
+    network = network_of_ros(ros_discovery());
+  } else if (name == "default") {
+    network.peers = {"127.0.0.1"};  // a node with LOCALHOST is met there, and not by multicast
+  } else {
+    network.interfaces = fmt::format("<NetworkInterface name=\"{}\"/>", name);
+    network.multicast = name == "lo" ? "false" : "spdp";
+    if (name == "lo") network.peers = {"127.0.0.1"};
+  }
+  network.peers.insert(network.peers.end(), options.peers.begin(), options.peers.end());
+  return network;
+}
+
+// Omits empty elements: Cyclone accepts them, but a person has to read the text.
+std::string element(const char* name, const std::string& content) {
+  return content.empty() ? "" : fmt::format("<{0}>{1}</{0}>", name, content);
+}
+
+std::string general_xml(const Network& network) {
+  return element("Interfaces", network.interfaces) + element("AllowMulticast", network.multicast);
+}
+
+std::string discovery_xml(const Network& network) {
+  std::string peers;
+  for (const std::string& peer : network.peers)
+    peers += fmt::format("<Peer Address=\"{}\"/>", peer);
+  return kIndices + element("Peers", peers) + element("Tag", network.tag);
+}
+
+// The person's own settings for Cyclone. They may be a text, or name a file.
+std::string own_settings() {
+  const char* const uri = std::getenv("CYCLONEDDS_URI");
+  return uri == nullptr ? "" : uri;
+}
+
+// True if those settings choose the cards: Cyclone adds up the cards of all settings, and refuses
+// one that is named twice.
+bool choose_cards(const std::string& settings) {
+  constexpr std::string_view kFile = "file://";
+  std::string text = settings;
+  if (settings.starts_with(kFile)) {
+    std::ifstream file(settings.substr(kFile.size()));
+    text.assign(std::istreambuf_iterator<char>(file), {});
+  }
+  return text.find("NetworkInterface") != std::string::npos;
+}
+
+// Cyclone's default of 14,720 B cuts a batch of 100 poses in two on loopback, and needs ten IP
+// fragments on a network.
+DatagramSizes datagram_sizes(const DdsOptions& options) {
+  return interface_of(options).name == "lo" ? DatagramSizes{.message = 65'000, .fragment = 64'000}
+                                            : DatagramSizes{.message = 1'400, .fragment = 1'300};
+}
+
+std::string describe_interface(const Interface& interface) {
+  if (interface.name == "default") return "as Cyclone chooses";
+  if (interface.name != "ros") return interface.name;
+  return fmt::format("ros (discovery range {}{})", name_of(ros_discovery().range),
+                     interface.variable.empty() ? "" : ", as " + interface.variable + " is set");
+}
+
+// Says which programs need no configuration to reach it; empty if there are none.
+std::string who_reaches(const DdsOptions& options) {
+  const std::string name = interface_of(options).name;
+  if (name == "default" && options.peers.empty()) {
+    return "every program without a configuration reaches it, and ROS 2 nodes of this machine with "
+           "ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST";
+  }
+  if (name != "ros") return "";
+  switch (ros_discovery().range) {
+    case RosRange::kOff:
+      return "ROS_AUTOMATIC_DISCOVERY_RANGE=OFF: no other program reaches it";
+    case RosRange::kLocalhost:
+      return "programs of this machine reach it with ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST, with "
+             "ROS_LOCALHOST_ONLY=1 or with --interface lo; ROS 2 nodes without these do not";
+    case RosRange::kSubnet:
+      return "every program without a configuration reaches it, and every ROS 2 node of this "
+             "machine unless its ROS_AUTOMATIC_DISCOVERY_RANGE is OFF";
+    case RosRange::kSystemDefault:
+      return "every program without a configuration reaches it";
+  }
+  return "";
+}
+
+}  // namespace
+
+std::string domain_configuration(const DdsOptions& options) {
+  const DatagramSizes sizes = datagram_sizes(options);
+  const std::string settings = own_settings();
+  Network network = network_of(options);
+  if (choose_cards(settings)) network.interfaces.clear();
+  std::string xml = fmt::format(
+      "<CycloneDDS><Domain id=\"any\"><General>{}"
+      "<MaxMessageSize>{}B</MaxMessageSize><FragmentSize>{}B</FragmentSize></General>"
+      "{}{}</Domain></CycloneDDS>",
+      general_xml(network), sizes.message, sizes.fragment,
+      element("Discovery", discovery_xml(network)),
+      element("Internal", std::string(kAskAtOnce) + kSendBuffer));
+  return settings.empty() ? xml : xml + "," + settings;  // what comes last wins
+}
+
+std::string describe_partition(const std::string& partition) {
+  return partition.empty() ? "default partition" : fmt::format("partition {}", partition);
+}
+
+std::string where_joined(const DdsOptions& options, const Domain& domain) {
+  return fmt::format("domain {}{}, {}, interface {}, datagrams of up to {} B{}", domain.id,
+                     domain.is_of_ros ? " (of ROS_DOMAIN_ID)" : "",
+                     describe_partition(options.partition),
+                     describe_interface(interface_of(options)), datagram_sizes(options).message,
+                     own_settings().empty() ? "" : ", then CYCLONEDDS_URI");
+}
+
+// The proposed settings leave out datagram sizes, which clients need not share.
+std::string how_to_reach(const DdsOptions& options, std::uint32_t domain) {
+  const std::string on = fmt::format(
+      "in domain {} (ROS_DOMAIN_ID){}", domain,
+      options.partition.empty()
+          ? ""
+          : fmt::format(", in partition {}, which ROS 2 nodes never are", options.partition));
+  if (const std::string who = who_reaches(options); !who.empty())
+    return fmt::format("{}, {}", who, on);
+  const Network network = network_of(options);
+  // Cyclone refuses a card that is named twice, and Humble names lo for ROS_LOCALHOST_ONLY.
+  const bool is_met_on_lo = interface_of(options).name == "lo" && options.partition.empty();
+  return fmt::format(
+      "other programs reach it with CYCLONEDDS_URI='<CycloneDDS><Domain>{}{}</Domain></CycloneDDS>'"
+      ", {}{}",
+      element("General", general_xml(network)), element("Discovery", discovery_xml(network)), on,
+      is_met_on_lo ? "; a node of ROS 2 Humble with ROS_LOCALHOST_ONLY=1 reaches it without that "
+                     "variable, and ends if both are set. A daemon with --interface ros meets "
+                     "nodes with neither"
+                   : "");
+}
+
+}  // namespace clearance

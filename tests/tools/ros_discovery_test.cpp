@@ -1,0 +1,181 @@
+// Programs that meet the daemon on one machine and on two. The daemon has ROS 2's variables, and
+// they have the settings that rmw_cyclonedds makes of them. Each machine is a network namespace.
+#include <gtest/gtest.h>
+#include <net/if.h>
+#include <sys/ioctl.h>
+#include <sys/socket.h>
+#include <unistd.h>
+
+#include <cstring>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "monitor/participant/domain_configuration.hpp"
+#include "tests/tools/lossy_network.hpp"
+#include "tests/tools/running_cell.hpp"
+
+namespace clearance {
+namespace {
+
+using test::ChildProcess;
+using test::eventually;
+using Variables = std::vector<std::pair<std::string, std::string>>;
+
+// A domain that nothing else in this process configures.
+constexpr std::uint32_t kDomain = 118;
+
+std::string domain(const std::string& settings) {
+  return "<CycloneDDS><Domain>" + settings + "</Domain></CycloneDDS>";
+}
+
+const std::string kIndices =
+    "<ParticipantIndex>auto</ParticipantIndex><MaxAutoParticipantIndex>32"
+    "</MaxAutoParticipantIndex>";
+const std::string kNoMulticast = "<General><AllowMulticast>false</AllowMulticast></General>";
+
+// The settings of nodes on rmw_cyclonedds, Jazzy's and Humble's.
+const std::string kSubnet = domain("<Discovery>" + kIndices + "</Discovery>");
+const std::string kLocalhost = domain(kNoMulticast + "<Discovery>" + kIndices +
+                                      "<Peers><Peer address=\"localhost\"/></Peers></Discovery>");
+const std::string kHumble = domain("");
+const std::string kHumbleLocalhost =
+    domain("<General><Interfaces><NetworkInterface address=\"127.0.0.1\"/></Interfaces></General>");
+// A node that finds no other, and has to be found.
+const std::string kSilent = domain(kNoMulticast + "<Discovery>" + kIndices + "</Discovery>");
+
+// True if a program with these settings hears the daemon's health.
+bool hears_health(const std::string& settings) {
+  const dds_entity_t joined = dds_create_domain(kDomain, settings.c_str());
+  const dds_entity_t participant = dds_create_participant(kDomain, nullptr, nullptr);
+  EXPECT_GT(participant, 0) << settings;
+  const dds_entity_t of = dds_create_topic(participant, &clearance_msg_Health_desc,
+                                           "clearance/health", nullptr, nullptr);
+  dds_qos_t* const qos = dds_create_qos();
+  dds_qset_reliability(qos, DDS_RELIABILITY_RELIABLE, DDS_MSECS(100));
+  dds_qset_durability(qos, DDS_DURABILITY_TRANSIENT_LOCAL);
+  const dds_entity_t reader = dds_create_reader(participant, of, qos, nullptr);
+  dds_delete_qos(qos);
+  Sample<clearance_msg_Health> health;
+  void* pointer = &*health;
+  dds_sample_info_t info{};
+  const bool came =
+      eventually([&] { return dds_take(reader, &pointer, &info, 1, 1) == 1 && info.valid_data; });
+  dds_delete(participant);
+  dds_delete(joined);
+  return came;
+}
+
+// A daemon on one of two machines.
+class RosDiscoveryNetwork : public testing::Test {
+ protected:
+  void SetUp() override {
+    for (const auto* machine : {&here, &there}) {
+      if (!machine->refusal().empty()) GTEST_SKIP() << machine->refusal();
+    }
+    wire.emplace(here.frames(), there.frames());
+  }
+  void start(const Variables& variables, const std::vector<std::string>& arguments = {}) {
+    here.run([&] {
+      daemon.emplace(test::kDaemon,
+                     test::with({cell.path(), "--domain", std::to_string(kDomain)}, arguments),
+                     test::ChildOptions{.environment = variables});
+    });
+    ASSERT_TRUE(eventually([&] { return daemon->told("how-to-reach"); })) << daemon->output();
+  }
+  static bool hears(test::NetworkNamespace& machine, const std::string& settings) {
+    bool came = false;
+    machine.run([&] { came = hears_health(settings); });
+    return came;
+  }
+  // The settings that the daemon's second line proposes.
+  [[nodiscard]] std::string proposed() const {
+    const std::string text = daemon->output(), before = "CYCLONEDDS_URI='";
+    const std::size_t begin = text.find(before);
+    if (begin == std::string::npos) return "";
+    return text.substr(begin + before.size(),
+                       text.find('\'', begin + before.size()) - begin - before.size());
+  }
+
+  test::NetworkNamespace here{1}, there{2};
+  std::optional<test::LossyWire> wire;
+  test::CellFile cell{test::small_cell("ros")};
+  std::optional<ChildProcess> daemon;
+};
+
+TEST_F(RosDiscoveryNetwork, WhereRosIsSetUpTheDaemonMeetsEveryNodeOfItsMachine) {
+  start({{"ROS_DISTRO", "jazzy"}});
+  for (const std::string& node : {kSubnet, kLocalhost, kHumble, kHumbleLocalhost})
+    EXPECT_TRUE(hears(here, node)) << node << '\n' << daemon->output();
+  EXPECT_TRUE(hears(there, kSubnet)) << daemon->output();
+  EXPECT_TRUE(hears(here, domain_configuration({.interface = "lo"}))) << "a client elsewhere on lo";
+  EXPECT_TRUE(daemon->told("how-to-reach", {"every ROS 2 node of this machine"}))
+      << daemon->output();
+}
+
+TEST_F(RosDiscoveryNetwork, TheVariablesForThisMachineMeanWhatTheyMeanForNodes) {
+  for (const Variables& variables : {Variables{{"ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST"}},
+                                     Variables{{"ROS_LOCALHOST_ONLY", "1"}}}) {
+    start(variables);
+    for (const std::string& node : {kLocalhost, kHumbleLocalhost})
+      EXPECT_TRUE(hears(here, node)) << node << '\n' << daemon->output();
+    EXPECT_TRUE(daemon->told("how-to-reach", {"programs of this machine reach it with"}))
+        << daemon->output();
+  }
+}
+
+TEST_F(RosDiscoveryNetwork, StaticPeersAreFoundOnAnotherMachine) {
+  start({{"ROS_STATIC_PEERS", "10.77.0.2"}});
+  EXPECT_TRUE(hears(there, kSilent)) << daemon->output();
+}
+
+TEST_F(RosDiscoveryNetwork, ClientsReadTheVariablesToo) {
+  start({{"ROS_DISTRO", "jazzy"}});
+  const Variables of_node{{"ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET"}};
+  std::optional<ChildProcess> watch;
+  there.run([&] {
+    watch.emplace(test::kWatch,
+                  std::vector<std::string>{"--plain", "--domain", std::to_string(kDomain)},
+                  test::ChildOptions{.environment = of_node});
+  });
+  EXPECT_TRUE(eventually([&] { return watch->wrote("cycle "); })) << watch->output();
+}
+
+TEST_F(RosDiscoveryNetwork, TheDefaultInterfaceMeetsNodesOfThisMachineThatUseNoMulticast) {
+  start({}, {"--interface", "default"});
+  for (const std::string& node : {kSubnet, kLocalhost})
+    EXPECT_TRUE(hears(here, node)) << node << '\n' << daemon->output();
+}
+
+// rmw_cyclonedds puts its own settings before those of the variable.
+TEST_F(RosDiscoveryNetwork, TheProposedSettingsReachADaemonOnLoopback) {
+  start({});
+  for (const std::string& node : {kSubnet, kLocalhost, kHumble})
+    EXPECT_TRUE(hears(here, node + "," + proposed())) << proposed();
+  EXPECT_TRUE(hears(here, kHumbleLocalhost)) << "without them, as with them the node ends";
+  EXPECT_TRUE(daemon->told("how-to-reach", {"Humble with ROS_LOCALHOST_ONLY=1 reaches it without"}))
+      << daemon->output();
+}
+
+TEST_F(RosDiscoveryNetwork, CyclonesOwnVariableMayNameTheCardOfRos) {
+  start({{"ROS_DISTRO", "jazzy"},
+         {"CYCLONEDDS_URI", domain("<General><Interfaces><NetworkInterface name=\"eth0\"/>"
+                                   "</Interfaces></General>")}});
+  EXPECT_TRUE(hears(here, kSubnet)) << daemon->output();
+}
+
+TEST_F(RosDiscoveryNetwork, AMachineWithoutACardHasItsLoopback) {
+  here.run([] {
+    ifreq card{};
+    std::strncpy(card.ifr_name, "eth0", IFNAMSIZ - 1);
+    const int socket = ::socket(AF_INET, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    EXPECT_EQ(ioctl(socket, SIOCSIFFLAGS, &card), 0) << "without IFF_UP";
+    close(socket);
+  });
+  start({{"ROS_DISTRO", "jazzy"}});
+  for (const std::string& node : {kSubnet, kLocalhost, kHumbleLocalhost})
+    EXPECT_TRUE(hears(here, node)) << node << '\n' << daemon->output();
+}
+
+}  // namespace
+}  // namespace clearance
