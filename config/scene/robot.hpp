@@ -10,6 +10,7 @@
 
 #include "config/scene/place_error.hpp"
 #include "config/scene/ros_stamps.hpp"
+#include "config/scene/stopping.hpp"
 #include "core/pose.hpp"
 
 namespace clearance {
@@ -133,6 +134,7 @@ struct Robot {
   bool is_attached = false;
   std::vector<RobotLink> links;  // the root first
   std::vector<RobotJoint> joints;
+  RobotStops stopping = {};        // stated
   std::vector<std::string> notes;  // for the log: what was left out, and why
 
   // Tells whether the variable belongs to the base, which follows a frame of tf.
