@@ -70,17 +70,22 @@ void Displacer::displace(Inputs& inputs) noexcept {
 }
 
 // A frame is placed by what was heard of its carrier around its stamp, which a contradiction puts
-// in doubt. Later frames are trusted again.
+// in doubt. So does the end of frames that tf places: a contradiction there may have ended them.
+// Later frames are trusted again.
 void Displacer::visit_seen(bool first, Inputs& inputs) noexcept {
   for (const std::uint32_t i : seen_) {
-    auto& [carrier, lost_ns] = inputs.sensors[scene_.objects[i].sensor];
+    const std::uint32_t sensor = scene_.objects[i].sensor;
+    auto& [carrier, lost_ns] = inputs.sensors[sensor];
+    const InputRecord& input = inputs.objects[i].input;
+    const bool is_late_on_tf = scene_.sensors[sensor].is_on_tf() &&
+                               input.age_ns(inputs.time.now_ns) > scene_.objects[i].age_limit_ns;
     const bool is_lost =
         carrier.kind == RobotBase::Kind::kObject
             ? !inputs.objects[carrier.object].known()
             : carrier.kind == RobotBase::Kind::kLink &&
                   inputs.robots.is_lost(carrier.robot, carrier.link, inputs.objects);
-    if (is_lost) lost_ns = inputs.time.now_ns;
-    visit(i, first, inputs, inputs.objects[i].input.stamp_ns <= lost_ns);
+    if (is_lost || is_late_on_tf) lost_ns = inputs.time.now_ns;
+    visit(i, first, inputs, input.stamp_ns <= lost_ns);
   }
 }
 

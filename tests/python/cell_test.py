@@ -265,3 +265,63 @@ def test_a_cell_tells_its_names(planar):
     np.testing.assert_array_equal(planar.joint_limits, [[-3, 3], [-3, 3]])
     assert planar.pairs == planar.published_pairs and len(planar.pairs) == 4
     assert planar.rate_hz == 200 and planar.interface == "lo" and planar.revision != 0
+
+
+BALL = {"ball": [1.5, 0.5, 1.0, 0, 0, 0, 1]}
+
+
+def test_chosen_pairs_are_the_columns_of_all(planar):
+    joints = random_joints(200, seed=5)
+    every = planar.distances(joints, BALL, gradients=True)
+    chosen = [planar.pairs[3], planar.pairs[1][::-1]]
+    found = planar.distances(joints, BALL, gradients=True, pairs=chosen)
+    assert found.distance.shape == (200, 2)
+    for array in ("distance", "lower", "upper", "status", "part_a", "point_a", "normal", "gradient"):
+        np.testing.assert_array_equal(getattr(found, array), getattr(every, array)[:, [3, 1]])
+
+
+@pytest.mark.parametrize("below", [-0.05, 0.0, 0.02, 0.5, 1.2, 3.0])
+def test_a_limit_is_decided_as_by_all_distances(planar, below):
+    joints = random_joints(500, seed=6)
+    every = planar.distances(joints, BALL)
+    found = planar.distances(joints, BALL, below=below)
+    is_below = np.any(every.upper < below, axis=1)
+    is_free = np.all(every.lower >= below, axis=1)
+    assert np.all((is_below | is_free))
+    np.testing.assert_array_equal(found.verdict == clearance.Verdict.BELOW, is_below)
+    np.testing.assert_array_equal(found.verdict == clearance.Verdict.FREE, is_free)
+    assert np.all(found.lower <= every.upper) and np.all(found.upper >= every.lower)
+    free = found.verdict == clearance.Verdict.FREE
+    assert np.all(found.lower[free] >= below)
+
+
+def test_an_unknown_pair_leaves_a_limit_undecided(planar):
+    joints = [[0.0, 0.0]]
+    assert planar.distances(joints, below=0.1).verdict[0] == clearance.Verdict.UNDECIDED
+    wall = [pair for pair in planar.pairs if "ball" not in pair]
+    assert planar.distances(joints, below=0.1, pairs=wall).verdict[0] == clearance.Verdict.FREE
+
+
+def test_threads_give_the_same_bits(planar):
+    joints = random_joints(1000, seed=7)
+    one = planar.distances(joints, BALL)
+    for threads in (0, 2, 5):
+        many = planar.distances(joints, BALL, threads=threads)
+        for array in ("distance", "lower", "upper", "point_a", "normal"):
+            np.testing.assert_array_equal(getattr(many, array), getattr(one, array))
+    joints[[700, 300, 900], 1] = 99.0
+    with pytest.raises(ValueError, match=r"joints\[300, 1\]"):
+        planar.distances(joints, threads=3)
+
+
+def test_wrong_pairs_limits_and_threads_are_named(planar):
+    joints = [[0.0, 0.0]]
+    with pytest.raises(KeyError, match="'wall' and 'moon'"):
+        planar.distances(joints, pairs=[("wall", "moon")])
+    with pytest.raises(ValueError, match="below: found nan"):
+        planar.distances(joints, below=math.nan)
+    with pytest.raises(ValueError, match="threads: found -1"):
+        planar.distances(joints, threads=-1)
+    with pytest.raises(AttributeError, match="below="):
+        planar.distances(joints).verdict
+    assert planar.distances(joints, pairs=[]).distance.shape == (1, 0)

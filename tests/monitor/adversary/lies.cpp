@@ -11,9 +11,12 @@ constexpr std::int64_t kTakeoverFrom = 1050 * kMs;  // after the owner fell sile
 constexpr double kOutOfReach = 8.0;                 // m, of a takeover
 
 std::int64_t age_limit(Channel channel) {
-  if (channel == Channel::kEye || channel == Channel::kPoints) return kEyeAgeLimit;
+  if (channel == Channel::kEye || is_seen(channel)) return kEyeAgeLimit;
   return channel == Channel::kOdom || channel == Channel::kBase ? kBaseAgeLimit : kAgeLimit;
 }
+
+// How long a picture that this channel has placed is in use: late, it is unknown (config/KEYS.md).
+std::int64_t old_picture(Channel channel) { return channel == Channel::kEye ? kEyeAgeLimit : 0; }
 
 double stated_speed(Channel channel) {
   if (channel == Channel::kEye) return kEyeSpeed;
@@ -61,8 +64,7 @@ double size_of(const Fault& fault, Random& random) {
       return random.uniform(3.0, 7.0);
     case Lie::kWrongStamps:
       // How old the points are that come with fresh stamps.
-      if (fault.channel == Channel::kPoints)
-        return static_cast<double>(kMs) * random.integer(5, 99);
+      if (is_seen(fault.channel)) return static_cast<double>(kMs) * random.integer(5, 99);
       return static_cast<double>(kMs) *
              (fault.flag ? random.uniform(1.0, 4.0) : -random.uniform(5.0, 200.0));
     case Lie::kRivalLater:
@@ -95,22 +97,27 @@ void drift(const Fault& fault, std::int64_t t, Told& told) {
   told.joint_offset[fault.joint] = lengths * kJointSpeed[fault.joint] * (fault.flag ? 1 : -1);
 }
 
-bool strikes_points(Lie lie) {
-  constexpr std::array kAll{Lie::kFreezeAtRest, Lie::kWrongStamps, Lie::kSilence,
-                            Lie::kReordered,    Lie::kDuplicated,  Lie::kRivalLater,
-                            Lie::kParentFar,    Lie::kNotANumber,  Lie::kScaled,
-                            Lie::kTorn,         Lie::kLayout};
-  return std::ranges::count(kAll, lie) != 0;
+bool strikes_seen(Lie lie, Channel channel) {
+  constexpr std::array kAll{
+      Lie::kFreezeAtRest, Lie::kWrongStamps, Lie::kSilence,    Lie::kReordered, Lie::kDuplicated,
+      Lie::kRivalLater,   Lie::kParentFar,   Lie::kNotANumber, Lie::kScaled,    Lie::kTorn,
+      Lie::kLayout,       Lie::kRing,        Lie::kHeld};
+  const bool is_still = lie == Lie::kFreezeAtRest || lie == Lie::kRing;
+  return std::ranges::count(kAll, lie) != 0 && !(is_still && channel == Channel::kMap);
 }
 
-// Makes the lies that only points tell, or that they tell differently.
-bool is_told_of_points(const Fault& fault, Told& told) {
-  if (fault.channel != Channel::kPoints) return false;
+// Makes the lies that only cameras and maps tell, or that they tell differently.
+bool is_told_of_seen(const Fault& fault, std::int64_t t, Told& told) {
+  if (!is_seen(fault.channel)) return false;
+  if (fault.lie == Lie::kRing)
+    told.value_at = fault.from + (t - fault.from) % (12 * kPicturePeriod);
+  told.goes_on_a_little = fault.lie == Lie::kFreezeAtRest && fault.flag;
   if (fault.lie == Lie::kWrongStamps) told.value_at -= static_cast<std::int64_t>(fault.size);
   told.is_torn = fault.lie == Lie::kTorn;
   told.has_other_layout = fault.lie == Lie::kLayout && !fault.flag;
   told.is_padded = fault.lie == Lie::kLayout && fault.flag;
-  return fault.lie == Lie::kWrongStamps || fault.lie == Lie::kTorn || fault.lie == Lie::kLayout;
+  constexpr std::array kAll{Lie::kWrongStamps, Lie::kTorn, Lie::kLayout, Lie::kRing};
+  return std::ranges::count(kAll, fault.lie) != 0;
 }
 
 }  // namespace
@@ -121,7 +128,9 @@ const char* name(Lie lie) {
       "ZeroVelocities", "WrongSign",    "WrongUnit",  "WrongStamps", "Silence",
       "Reordered",      "Duplicated",   "RivalLater", "RivalFirst",  "RivalWhileRefused",
       "Takeover",       "OutOfLimits",  "Wrapped",    "ParentFar",   "WrongQuaternion",
-      "NotANumber",     "Scaled",       "Torn",       "Layout"};
+      "NotANumber",     "Scaled",       "Torn",       "Layout",      "Ring",
+      "Held",           "Miscounted",   "Attached",   "Absent",      "Unwatched",
+      "Allowed",        "Restored"};
   return kNames[static_cast<std::size_t>(lie)];
 }
 
@@ -133,7 +142,10 @@ std::string described(const Fault& fault) {
 }
 
 bool strikes(Lie lie, Channel channel) {
-  if (channel == Channel::kPoints) return strikes_points(lie);
+  if (is_seen(channel)) return strikes_seen(lie, channel);
+  if (lie == Lie::kRestored) return channel == Channel::kPartner;
+  if (lie >= Lie::kAttached || !is_sent(channel))
+    return lie >= Lie::kAttached && channel == Channel::kCommands;
   switch (lie) {
     case Lie::kFreezeInMotion:
     case Lie::kHalfSpeed:
@@ -146,11 +158,13 @@ bool strikes(Lie lie, Channel channel) {
       return is_ball(channel);
     case Lie::kOutOfLimits:
     case Lie::kWrapped:
+    case Lie::kMiscounted:
       return is_robot(channel);
     case Lie::kParentFar:
       return is_frame(channel);
     case Lie::kTorn:
     case Lie::kLayout:
+    case Lie::kRing:
       return false;
     case Lie::kWrongQuaternion:
       return !is_robot(channel);
@@ -174,7 +188,7 @@ Fault drawn(Lie lie, Channel channel, Random& random) {
     fault.to = static_cast<std::int64_t>(random.uniform(1800.0, 2500.0)) * kMs;
   }
   // The picture that is repeated is the first one of the fault, and true.
-  if (channel == Channel::kPoints) fault.from -= fault.from % kPicturePeriod;
+  if (is_seen(channel)) fault.from -= fault.from % kPicturePeriod;
   return fault;
 }
 
@@ -204,16 +218,17 @@ Admissible admissible(const Fault& fault) {
     // The frozen limit is the time that the cell grants, from the first repeated sample on, which
     // may come a period of 2 ms after the fault. The next sample after the limit shows that it has
     // passed, and takes up to 5 ms.
+    // A picture that repeats is noticed at once.
     case Lie::kFreezeAtRest:
-      return {kFrozenLimit + 10 * kMs, 0.0};
-    // Positions are compared with one that is up to six age limits old, with one in hand.
+      return {is_seen(fault.channel) ? 0 : kFrozenLimit + 10 * kMs, 0.0};
+    // Positions are compared with one that is up to six age limits old, with one in hand. A picture
+    // that was placed by the lie stays in use until it is old.
     case Lie::kDrift:
-      return {7 * age_limit(fault.channel), 1.0};
-    // Points of a time before the stamp: the camera has moved meanwhile, less than its age limit
-    // allows.
+      return {7 * age_limit(fault.channel) + old_picture(fault.channel), 1.0};
+    // What is seen is of a time before the stamp: meanwhile it has moved, or the camera has, by
+    // less than the age limit allows.
     case Lie::kWrongStamps:
-      if (fault.channel == Channel::kPoints)
-        return {0, fault.size / static_cast<double>(kEyeAgeLimit)};
+      if (is_seen(fault.channel)) return {0, fault.size / static_cast<double>(kEyeAgeLimit)};
       // Stamps ahead by less than the cell's limit for the future claim an age of zero.
       return {0, fault.size > 0.0 ? 1.0 : 0.0};
     // Where an angle passes through zero, it is right in any unit.
@@ -222,7 +237,7 @@ Admissible admissible(const Fault& fault) {
     // Only the lie is heard, until the owner speaks for the first time and its message has come. A
     // picture that was placed by the lie stays in use until it is old.
     case Lie::kRivalFirst:
-      return {kOwnerStarts + 5 * kMs + (fault.channel == Channel::kEye ? kEyeAgeLimit : 0), 0.0};
+      return {kOwnerStarts + 5 * kMs + old_picture(fault.channel), 0.0};
     // All others can be noticed in the tick that hears them.
     default:
       return {};
@@ -236,7 +251,9 @@ Told told(const Fault& fault, std::int64_t t) {
   constexpr std::array kOfVelocities{Lie::kFreezeInMotion, Lie::kHalfSpeed, Lie::kZeroVelocities,
                                      Lie::kWrongSign, Lie::kWrongUnit};
   if (std::ranges::count(kOfVelocities, fault.lie) != 0) told.velocities = true;
-  if (t < fault.from || t >= fault.to || is_told_of_points(fault, told)) return told;
+  if (t < fault.from || t >= fault.to || is_told_of_seen(fault, t, told)) return told;
+  told.is_repeated = fault.lie == Lie::kDuplicated;
+  if (fault.lie == Lie::kHeld) told.held_until = fault.to;
   switch (fault.lie) {
     case Lie::kFreezeInMotion:
       told.value_at = fault.from;
@@ -278,8 +295,8 @@ Told told(const Fault& fault, std::int64_t t) {
     case Lie::kReordered:
       told.longest_delay = 30 * kMs;
       break;
-    case Lie::kDuplicated:
-      told.is_repeated = true;
+    case Lie::kMiscounted:
+      (fault.flag ? told.has_joint_twice : told.has_too_few) = true;
       break;
     case Lie::kOutOfLimits:
       told.joint_offset[fault.joint] = fault.size;

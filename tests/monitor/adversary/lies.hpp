@@ -14,6 +14,7 @@
 // - The points of a camera are false and move as points may. A program that publishes them first,
 //   or takes them over from one that is silent, is believed.
 // - A cloud of one row loses points: only rows of a picture say how many there have to be.
+// - A map stands still under fresh stamps: so does one of a place where nothing changes.
 #pragma once
 
 #include <array>
@@ -53,6 +54,14 @@ enum class Lie : std::uint8_t {
   kScaled,             // lengths in mm, angles in degrees
   kTorn,               // all points but one are missing
   kLayout,             // fields of points that share bytes, or rows that are half padding
+  kRing,               // twelve pictures in turn, with fresh stamps
+  kHeld,               // a network holds all messages back, and delivers them at the end
+  kMiscounted,         // a joint twice with two values, or too few values for a robot's links
+  kAttached,           // no lie: a command attaches the part to the arm, another one detaches it
+  kAbsent,             // no lie: commands take a ball away and bring it back
+  kUnwatched,          // no lie: commands leave a pair out and watch it again
+  kAllowed,            // no lie: commands allow a contact and withdraw it
+  kRestored,           // no lie: a partner goes on from the saved state, and its reports count
   kCount
 };
 inline constexpr auto kLies = static_cast<std::size_t>(Lie::kCount);
@@ -105,7 +114,10 @@ struct Told {
   std::int64_t stamp_offset = 0;   // ns
   std::int64_t longest_delay = 0;  // ns
   bool is_repeated = false;
-  bool is_torn = false, has_other_layout = false, is_padded = false;  // points
+  bool is_torn = false, has_other_layout = false, is_padded = false;  // of what is seen
+  bool goes_on_a_little = false;                                      // one pixel of a picture
+  std::int64_t held_until = 0;
+  bool has_joint_twice = false, has_too_few = false;
 };
 [[nodiscard]] Told told(const Fault& fault, std::int64_t t);
 

@@ -1,5 +1,7 @@
 #include "tests/monitor/adversary/lying_cell.hpp"
 
+#include <fmt/format.h>
+
 #include <string>
 
 #include "tests/config/cells.hpp"
@@ -26,6 +28,10 @@ std::string key(const char* name, const std::string& value) {
   return *name == '\0' ? "" : std::string(", ") + name + ": " + value;
 }
 
+std::string at(const std::array<double, 3>& place) {
+  return fmt::format("xyz: [{}, {}, {}]", place[0], place[1], place[2]);
+}
+
 std::string cell_text_of_lies() {
   const std::string frozen = key(kJointFrozenKey, std::to_string(kFrozenLimit / kMs));
   const std::string ball =
@@ -46,16 +52,31 @@ std::string cell_text_of_lies() {
          ball + "  - {name: ball1" + ball + "  - {name: ball2" + ball +
          "  - {name: follower, frame: follower_link" + ball +
          "  - {name: rock, fixed: true, pose: {xyz: [1.0, 1.3, 0.3]}, sphere: {radius: 0.2}}\n"
+         "  - {name: part, fixed: true, pose: {" +
+         at(kPartPlace) +
+         "}, sphere: {radius: 0.05}}\n"
          "sensors:\n"
          "  - {name: eye, points: /eye/points, most_points: 4, depth_along: ray, depth_error: "
          "{constant: 0.002}, range: [0.1, 8], most_shell: 0.02, age_limit_ms: 100, max_speed: "
          "0.001, mount: {frame: "
          "eye_link, max_speed: 1, max_turn_speed: 1}}\n"
+         "  - {name: lens, depth_image: /lens/image, size: [16, 12], depth_error: {constant: "
+         "0.01}, "
+         "range: [0.3, 8], most_shell: 0.02, age_limit_ms: 100, max_speed: 0.6, mount: {pose: {" +
+         at(kLensPlace) +
+         ", rpy: [3.141592653589793, 0, 0]}}}\n"
+         "  - {name: map, octomap: /map, range: 12, most_points: 8, most_shell: 0.02, "
+         "age_limit_ms: "
+         "250, max_speed: 0.6, mount: {pose: {" +
+         at(kMapPlace) +
+         "}}}\n"
          "pairs:\n"
          "  - between: [arm, eye]\n  - between: [post, eye]\n  - between: [balls, eye]\n"
          "  - between: [arm, balls]\n  - between: [post, balls]\n  - between: [balls, balls]\n"
          "  - between: [balls, rock]\n  - between: [arm, post]\n  - between: [arm, rock]\n"
-         "  - between: [arm, arm]\n"
+         "  - between: [arm, arm]\n  - between: [arm, lens]\n  - between: [balls, lens]\n"
+         "  - between: [arm, map]\n  - between: [balls, map]\n  - between: [balls, part]\n"
+         "  - between: [post, part]\n"
          "zones:\n"
          "  - {name: people, between: [ball0, arm], enter_below: 0.5, leave_above: 0.6, "
          "separation: "
@@ -68,27 +89,31 @@ std::string cell_text_of_lies() {
          "  - {name: rock, between: [balls, rock], enter_below: 0.3, leave_above: 0.35}\n"
          "  - {name: balls, between: [balls, balls], enter_below: 0.4, leave_above: 0.45}\n"
          "  - {name: seen, between: [arm, eye], enter_below: 1.2, leave_above: 1.25}\n"
-         "  - {name: near, between: [balls, eye], enter_below: 1.2, leave_above: 1.25}\n";
+         "  - {name: near, between: [balls, eye], enter_below: 1.2, leave_above: 1.25}\n"
+         "  - {name: plate, between: [balls, lens], enter_below: 2, leave_above: 2.05}\n"
+         "  - {name: walker, between: [balls, map], enter_below: 1.5, leave_above: 1.55}\n"
+         "  - {name: part, between: [balls, part], enter_below: 0.8, leave_above: 0.85}\n";
 }
 
 }  // namespace
 
 const char* name(Channel channel) {
-  constexpr std::array kNames{"ball0", "ball1", "ball2",    "arm", "post",
-                              "odom",  "base",  "follower", "eye", "points"};
+  constexpr std::array kNames{"ball0",   "ball1", "ball2",    "arm",    "post",
+                              "odom",    "base",  "follower", "eye",    "points",
+                              "picture", "map",   "commands", "partner"};
   return kNames[static_cast<std::size_t>(channel)];
 }
 
 const char* body_name(std::size_t body) {
   constexpr std::array<const char*, kBodies> kNames{
-      "ball0",      "ball1",      "ball2",     "follower", "rock",      "arm_foot",
-      "arm_upper",  "arm_lower",  "arm_wrist", "arm_tip",  "post_foot", "post_upper",
-      "post_lower", "post_wrist", "post_tip",  "eye"};
+      "ball0",     "ball1",     "ball2",   "follower",  "rock",       "arm_foot",   "arm_upper",
+      "arm_lower", "arm_wrist", "arm_tip", "post_foot", "post_upper", "post_lower", "post_wrist",
+      "post_tip",  "eye",       "lens",    "map",       "part"};
   return kNames[body];
 }
 
 Cell lying_cell() {
-  const ScratchFolder folder;
+  static const ScratchFolder folder;
   write_text(folder / "balls.urdf", kBallRobot);
   return read_good(cell_text_of_lies(), folder / "cell.yaml");
 }

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <deque>
+#include <memory>
 #include <vector>
 
 #include "monitor/ask/asker.hpp"
@@ -11,6 +12,8 @@
 #include "monitor/inputs/scene_ids.hpp"
 #include "monitor/loop/tick_loop.hpp"
 #include "monitor/sensors/sensors.hpp"
+#include "tests/monitor/adversary/lying_commands.hpp"
+#include "tests/monitor/adversary/lying_partner.hpp"
 
 namespace clearance::test::lies {
 namespace {
@@ -19,14 +22,15 @@ constexpr std::int64_t kStartOfLies = 1'700'000'000 * kSecond;  // CLOCK_REALTIM
 constexpr double kAsks = 0.005;                // the share of ticks after which is asked
 constexpr std::int64_t kWaypoints = 40 * kMs;  // between two of them
 
-// The ports of the loop, and what makes the camera's frames. The time is that of its only clock.
+// The ports of the loop, and what makes the frames of sensors. The time is that of its only clock.
 class LyingWorld final : public Clock, public PoseSource, public ReportSink {
  public:
   LyingWorld(const Cell& cell, const LyingRun& run)
       : truth_(run.sending.seed, run.joints_went_far),
-        revision_(cell.scene.revision),
+        cell_(&cell),
+        judged_(&cell),
         ids_(cell.scene),
-        sensors_(cell, {}, ids_.sources()),
+        sensors_(std::make_unique<Sensors>(cell, SensorsOptions{}, ids_.sources())),
         frames_(cell.scene.sensors.size()),
         intake_(cell,
                 {.admits_sources = true,
@@ -34,7 +38,7 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
                  .most_joints = 4096,
                  .use_sensor =
                      [this](const RawSensorMessage& message) {
-                       sensors_.add(message, {kStartOfLies + now_, kSecond + now_});
+                       sensors_->add(message, {kStartOfLies + now_, kSecond + now_});
                      }},
                 [this](PoseBatch& batch) {
                   batches_.push_back(batch);
@@ -44,23 +48,32 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
         senders_(cell.scene, truth_, run.sending, kStartOfLies, intake_,
                  [this](std::vector<std::uint64_t> writers) {
                    std::ranges::sort(writers);
-                   sensors_.keep(writers);
+                   sensors_->keep(writers);
                  }),
         judge_(cell.scene, truth_, run.sending.faults),
-        scene_(cell.scene),
-        asker_(cell.scene),
+        commands_(cell, truth_, run.sending.faults),
+        asker_(std::make_unique<Asker>(cell.scene)),
         present_(room_for_inputs(cell.scene)),
-        random_(run.sending.seed + 3000) {}
+        seen_(cell.scene.sensors.size()),
+        random_(run.sending.seed + 3000) {
+    for (const Fault& fault : run.sending.faults) {
+      if (fault.lie == Lie::kAttached) truth_.carry(fault.from, fault.to);
+      if (fault.lie == Lie::kRestored) partner_from_ = fault.from;
+    }
+  }
 
   std::int64_t realtime_ns() noexcept override { return kStartOfLies + now_; }
   std::int64_t monotonic_ns() noexcept override { return kSecond + now_; }
   std::int64_t steady_ns() noexcept override { return kSecond + now_; }
   void sleep_until(std::int64_t monotonic_ns) noexcept override {
     if (now_ >= 0 && random_.chance(kAsks)) ask();
+    follow();
     while (kSecond + now_ < monotonic_ns) {
       senders_.send(now_ += kMs);
+      has_built_ = false;
       build();
     }
+    change();
   }
   const PoseBatch* next() noexcept override {
     if (batches_.empty()) return nullptr;
@@ -68,15 +81,25 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
     batches_.pop_front();
     return &given_;
   }
-  void input(const PoseBatch&) noexcept override {}
+  void input(const PoseBatch& batch) noexcept override {
+    if (partner_) partner_->input(batch);
+  }
   void statistics(const LoopStatistics&) noexcept override {}
   void report(const Report& report, std::span<const SourceUse>) noexcept override {
-    judge_.judge(report, now_);
+    if (&commands_.in_force() != judged_) {
+      judged_ = &commands_.in_force();
+      judge_.change(judged_->scene);
+    }
+    const auto waits = commands_.waits_since(now_);
+    judge_.await_command(waits ? commands_.moved_body() : kBodies, waits.value_or(now_));
+    const Report* const told = partner_ ? partner_->tick(report) : nullptr;
+    if (told != nullptr && partner_->differs()) judge_.note_partner(report.cycle);
+    judge_.judge(told == nullptr ? report : *told, now_);
   }
   [[nodiscard]] Verdict verdict() const { return judge_.verdict(); }
   [[nodiscard]] FrameExchange& frames() noexcept { return frames_; }
-  // The monitor of the loop, which must outlive this.
-  void know(const Monitor& monitor) noexcept { monitor_ = &monitor; }
+  // The loop must outlive this.
+  void know(TickLoop& loop) noexcept { loop_ = &loop; }
 
  private:
   // As the daemon's thread of sensors does.
@@ -84,15 +107,45 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
     poses_.clear();
     joints_.clear();
     static_cast<void>(ids_.append(batch, poses_, joints_));
-    sensors_.add(poses_, joints_, kStartOfLies + now_);
+    sensors_->add(poses_, joints_, kStartOfLies + now_);
   }
   void build() {
-    sensors_.settle(
-        kSecond + now_, [this](const SeenCloud* cloud) { return frames_.is_used(cloud); },
-        [this](std::uint32_t sensor, const SensorFrame& frame) {
-          frames_.put(sensor, frame, revision_);
-          frame_ = frame;
+    sensors_->settle(
+        kSecond + now_,
+        [this](const SeenCloud* cloud) {
+          return frames_.is_used(cloud) || (partner_ && partner_->is_used(cloud));
+        },
+        [this](std::uint32_t sensor, SensorFrame frame) {
+          frame.content = ++contents_;
+          frames_.put(sensor, frame, cell_->scene.revision);
+          if (partner_) partner_->put(sensor, frame);
+          seen_[sensor] = frame;
+          has_built_ = true;
         });
+  }
+  // Changes the scene, or renews the monitor for a partner, which ends with its scene.
+  void change() {
+    if (now_ < 0) return;
+    if (commands_.waits_since(now_) && !loop_->busy()) partner_.reset();
+    commands_.work(now_, *loop_, *this);
+    if (partner_) partner_->catch_up();
+    if (partner_from_ < 0 || now_ < partner_from_ || has_built_ || loop_->busy()) return;
+    partner_from_ = -1;
+    partner_ = std::make_unique<LyingPartner>(*loop_, *this);
+  }
+  // All that belongs to one scene follows once the loop ticks another one, as in the daemon.
+  void follow() {
+    const Cell& now = commands_.in_force();
+    if (&now == cell_) return;
+    SceneMap map = scene_map(cell_->scene, now.scene);
+    ids_.change(now.scene.revision, map);
+    static_cast<void>(ids_.sources().add_named(named_sources(now.scene)));
+    sensors_ = std::make_unique<Sensors>(now, *sensors_, ids_.sources());
+    intake_.change(now);
+    cell_ = &now;
+    asker_ = std::make_unique<Asker>(now.scene);
+    present_ = room_for_inputs(now.scene);
+    seen_.assign(now.scene.sensors.size(), {});
   }
   // Asks between two ticks whether the robots may move as they are going to, while all others move
   // as the monitor knows them. A base on tf can only be held: the judge allows for its motion.
@@ -102,25 +155,28 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
     question.tolerance = 0.02;
     question.work_limit = 1000;
     question.motion = true_motion();
-    present_.cycle = monitor_->cycle();
+    const Scene& scene = cell_->scene;
+    const Monitor& monitor = loop_->state().monitor();
+    present_.cycle = monitor.cycle();
     present_.now_ns = kStartOfLies + now_;
-    read_inputs(*monitor_, present_);
+    read_inputs(monitor, present_);
     std::vector<SeenFrame> frames;
-    if (frame_.cloud != nullptr) {
-      frames.push_back({.sensor = "eye",
-                        .cloud = {std::shared_ptr<void>(), frame_.cloud},
-                        .world_from_sensor = frame_.world_from_sensor,
-                        .pose_error = frame_.pose_error});
+    for (std::size_t i = 0; i < seen_.size(); ++i) {
+      if (seen_[i].cloud == nullptr) continue;
+      frames.push_back({.sensor = scene.sensors[i].name,
+                        .cloud = {std::shared_ptr<void>(), seen_[i].cloud},
+                        .world_from_sensor = seen_[i].world_from_sensor,
+                        .pose_error = seen_[i].pose_error});
     }
     Answer answer;
-    for (std::size_t i = 0; i < scene_.variables.size(); ++i) {
+    for (std::size_t i = 0; i < scene.variables.size(); ++i) {
       const PresentJoint& joint = present_.joints[i];
-      const std::string& variable = scene_.variables[i].name;
+      const std::string& variable = scene.variables[i].name;
       if (variable.find('/') != std::string::npos && joint.state == PresentPose::State::kUsable)
         question.held.push_back({variable, joint.position});
     }
-    auto refusal = complete(scene_, present_, std::move(frames), question);
-    if (!refusal) refusal = asker_.ask(question, answer);
+    auto refusal = complete(scene, present_, std::move(frames), question);
+    if (!refusal) refusal = asker_->ask(question, answer);
     judge_.judge(answer, refusal, question.motion.times);
   }
   // Of all joints. The waypoints are so dense that cubic polynomials are the true
@@ -148,20 +204,25 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
   TrueMotion truth_;
   std::deque<PoseBatch> batches_;
   PoseBatch given_;
-  std::uint64_t revision_;
+  const Cell* cell_;    // that the loop ticks
+  const Cell* judged_;  // of the reports
   SceneIds ids_;
-  Sensors sensors_;
+  std::unique_ptr<Sensors> sensors_;
   std::vector<PoseSample> poses_;
   std::vector<JointSample> joints_;
   FrameExchange frames_;
   Intake intake_;
   LyingSenders senders_;
   TruthJudge judge_;
-  const Scene& scene_;
-  Asker asker_;
+  LyingCommands commands_;
+  std::unique_ptr<LyingPartner> partner_;
+  std::int64_t partner_from_ = -1;  // it is to begin then
+  std::uint64_t contents_ = 0;      // of frames
+  bool has_built_ = false;          // a frame, for the coming tick
+  std::unique_ptr<Asker> asker_;
   InputState present_;
-  SensorFrame frame_;  // the newest one
-  const Monitor* monitor_ = nullptr;
+  std::vector<SensorFrame> seen_;  // the newest ones, by sensor
+  TickLoop* loop_ = nullptr;
   Random random_;
 };
 
@@ -172,7 +233,7 @@ Verdict judged(const Cell& cell, const LyingRun& run) {
   TickLoop loop(
       cell.scene, world, {&world}, world,
       {.max_ticks = static_cast<std::uint64_t>(run.length / kMs), .frames = &world.frames()});
-  world.know(loop.state().monitor());
+  world.know(loop);
   const std::atomic<bool> stop = false;
   loop.run(stop);
   return world.verdict();

@@ -4,12 +4,10 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstring>
 #include <limits>
 #include <numbers>
 
 #include "monitor/wire/convert.hpp"
-#include "tests/monitor/intake/camera_texts.hpp"
 #include "tests/monitor/recording/ros_bags.hpp"
 
 namespace clearance::test::lies {
@@ -18,6 +16,8 @@ namespace {
 constexpr std::uint64_t kOwners = 100, kRivals = 200, kMapMaker = 300;  // writers
 constexpr const char* kTfType = "tf2_msgs/msg/TFMessage";
 constexpr double kFarAway = 50.0;  // m
+// How far the second value of a joint in one message is from the first one, rad.
+constexpr double kOtherValue = 1.0;
 
 std::size_t index(Channel channel) { return static_cast<std::size_t>(channel); }
 std::uint64_t writer_of(Channel channel, bool is_rival) {
@@ -49,7 +49,8 @@ LyingSenders::LyingSenders(const Scene& scene, const TrueMotion& truth, const Se
   for (bool& sends : sends_velocities_) sends = random_.chance(0.5);
   for (bool& by_ros : by_ros_) by_ros = random_.chance(0.5);
   for (std::int64_t& period : period_) period = random_.integer(1, 2) * kMs;
-  period_[index(Channel::kPoints)] = kPicturePeriod;
+  period_[index(Channel::kPoints)] = period_[index(Channel::kPicture)] = kPicturePeriod;
+  period_[index(Channel::kMap)] = kMapPeriod;
 }
 
 void LyingSenders::send(std::int64_t t) {
@@ -57,7 +58,8 @@ void LyingSenders::send(std::int64_t t) {
   if (t == 0) {
     const RosMessage far =
         transforms(start_ns_, start_ns_, {{"map", "far", {kFarAway, 0, 0}}}, "/tf_static");
-    under_way_.push_back({0, topic("/tf_static", kTfType), kMapMaker, start_ns_, far.cdr});
+    under_way_.emplace(t, Message{t, topic("/tf_static", kTfType), kMapMaker, start_ns_, far.cdr});
+    under_way_.emplace(t, camera_info(t));
   }
   for (std::size_t i = 0; i < kChannels; ++i) {
     const auto channel = static_cast<Channel>(i);
@@ -66,14 +68,14 @@ void LyingSenders::send(std::int64_t t) {
       const Rival other = rival(*fault, t);
       if (other.speaks) speak_as_rival(channel, other, t);
     }
-    if (t % period_[i] == 0) speak(channel, t);
+    if (is_sent(channel) && t % period_[i] == 0) speak(channel, t);
   }
   deliver(t);
 }
 
 // Tells the intake which writers exist, as discovery does.
 void LyingSenders::keep_writers(std::int64_t t) {
-  std::vector<std::uint64_t> writers{kMapMaker};
+  std::vector<std::uint64_t> writers{kMapMaker, kCameraDriver};
   for (std::size_t i = 0; i < kChannels; ++i) {
     const auto channel = static_cast<Channel>(i);
     const Fault* const fault = fault_of(channel);
@@ -96,7 +98,9 @@ const Fault* LyingSenders::fault_of(Channel channel) const {
 void LyingSenders::speak(Channel channel, std::int64_t t) {
   const Fault* const fault = fault_of(channel);
   const Told said = fault != nullptr ? told(*fault, t) : Told{.value_at = t};
-  const bool is_lost = t > kSecond / 5 && random_.chance(sending_.loss);
+  // A buffer of a ring that was lost in its first turn is new in the second one.
+  const bool may_be_lost = fault == nullptr || fault->lie != Lie::kRing;
+  const bool is_lost = t > kSecond / 5 && random_.chance(sending_.loss) && may_be_lost;
   if (said.is_silent || is_lost) return;
   post(message(channel, words(channel, said, t), false), t, said, channel);
 }
@@ -113,7 +117,7 @@ void LyingSenders::speak_as_rival(Channel channel, const Rival& rival, std::int6
   sent.writer = writer_of(channel, true);
   sent.due = t;
   sent.sent_ns = start_ns_ + t;
-  under_way_.push_back(std::move(sent));
+  under_way_.emplace(t, std::move(sent));
 }
 
 LyingSenders::Words LyingSenders::words(Channel channel, const Told& told, std::int64_t t) const {
@@ -124,7 +128,7 @@ LyingSenders::Words LyingSenders::words(Channel channel, const Told& told, std::
   const double nan = std::numeric_limits<double>::quiet_NaN();
   if (is_robot(channel)) {
     const auto moving = truth_.joints(channel, t);
-    words.joints = truth_.joints(channel, told.value_at);
+    std::ranges::copy(truth_.joints(channel, told.value_at), words.joints.begin());
     for (std::size_t i = 0; i < kJoints; ++i) {
       TrueJoint& joint = words.joints[i];
       const bool turns = i < 3;
@@ -136,22 +140,16 @@ LyingSenders::Words LyingSenders::words(Channel channel, const Told& told, std::
       joint.velocity = moving[i].velocity * told.velocity_scale;
       if (told.is_nan) joint.position = nan;
     }
+    if (told.has_joint_twice) {
+      words.joints.back() = words.joints.front();
+      words.joints.back().position += kOtherValue;
+      words.told_joints = words.joints.size();
+    }
+    words.has_too_few = told.has_too_few;
     return words;
   }
-  if (channel == Channel::kPoints) {
-    const TruePose eye = truth_.pose(Channel::kEye, told.value_at);
-    for (std::size_t i = 0; i < kSeenPoints; ++i) {
-      const TruePoint off = TrueMotion::seen_points()[i] - eye.col(3).head<3>();
-      const TruePoint seen =
-          (eye.topLeftCorner<3, 3>().transpose() * off + told.offset.cast<long double>()) *
-          told.length_scale;
-      const bool is_missing = told.is_nan || (told.is_torn && i + 1 < kSeenPoints);
-      words.points[i] = is_missing ? Eigen::Vector3f::Constant(std::nanf(""))
-                                   : Eigen::Vector3f(seen.cast<float>());
-    }
-    words.parent = told.is_far ? "far" : child_of(Channel::kEye);
-    words.has_other_layout = told.has_other_layout;
-    words.is_padded = told.is_padded;
+  if (is_seen(channel)) {
+    see(channel, told, t, words);
     return words;
   }
   words.pose = truth_.pose(channel, told.value_at);
@@ -173,15 +171,17 @@ LyingSenders::Message LyingSenders::message(Channel channel, const Words& words,
   Message made = is_ball(channel)    ? poses(channel, words, is_rival)
                  : is_robot(channel) ? joint_states(channel, words, is_rival)
                  : is_frame(channel) ? frames(channel, words)
-                                     : picture(words);
+                                     : seen(channel, words);
   made.writer = writer_of(channel, is_rival);
   return made;
 }
 
 LyingSenders::Message LyingSenders::poses(Channel channel, const Words& words, bool is_rival) {
   const std::string source = std::string(is_rival ? "rival of " : "tracker of ") + name(channel);
-  PoseBatch batch{
-      SourceName(source), ++sequence_[index(channel) + (is_rival ? kChannels : 0)], 0, {}};
+  PoseBatch batch{SourceName(source),
+                  ++sequence_[index(channel) + (is_rival ? kChannels : 0)],
+                  scene_.revision,
+                  {}};
   PoseSample sample;
   const auto named = std::ranges::find(scene_.objects, name(channel), &Object::name);
   sample.object = static_cast<std::uint32_t>(named - scene_.objects.begin());
@@ -207,11 +207,12 @@ LyingSenders::Message LyingSenders::joint_states(Channel channel, const Words& w
   if (by_ros_[channel == Channel::kArm ? 0 : 1]) {
     JointStateText state;
     for (std::size_t i = 0; i < words.told_joints; ++i) {
-      state.name.push_back(kJointNames[i]);
+      state.name.push_back(kJointNames[i % kJoints]);
       state.position.push_back(static_cast<double>(words.joints[i].position));
       if (words.has_velocities)
         state.velocity.push_back(static_cast<double>(words.joints[i].velocity));
     }
+    if (words.has_too_few) state.position.pop_back();
     const std::string topic_name = "/" + robot + "/joint_states";
     made.topic = topic(topic_name, "sensor_msgs/msg/JointState");
     made.cdr = joint_state(words.stamp_ns, words.stamp_ns, state, topic_name).cdr;
@@ -222,8 +223,8 @@ LyingSenders::Message LyingSenders::joint_states(Channel channel, const Words& w
                   0,
                   {}};
   for (std::size_t i = 0; i < words.told_joints; ++i) {
-    const auto named =
-        std::ranges::find(scene_.variables, robot + "_" + kJointNames[i], &JointVariable::name);
+    const auto named = std::ranges::find(scene_.variables, robot + "_" + kJointNames[i % kJoints],
+                                         &JointVariable::name);
     JointSample sample;
     sample.variable = static_cast<std::uint32_t>(named - scene_.variables.begin());
     sample.stamp_ns = words.stamp_ns;
@@ -232,6 +233,7 @@ LyingSenders::Message LyingSenders::joint_states(Channel channel, const Words& w
     sample.has_velocity = words.has_velocities;
     batch.joints.push_back(sample);
   }
+  if (words.has_too_few) batch.joints.pop_back();
   const auto wire = make_joint_states(batch, scene_);
   const auto cdr = encoder_.encode(*wire);
   made.topic = intake_.topic(TopicKind::kJointStates)->number;
@@ -251,25 +253,6 @@ LyingSenders::Message LyingSenders::frames(Channel channel, const Words& words) 
   return made;
 }
 
-// Two rows of two points.
-LyingSenders::Message LyingSenders::picture(const Words& words) {
-  camera::CloudText cloud;
-  cloud.width = cloud.height = 2;
-  cloud.row_step = (words.is_padded ? 2 : 1) * cloud.width * cloud.point_step;
-  cloud.data.assign(cloud.height * cloud.row_step, 0);
-  for (std::size_t i = 0; i < kSeenPoints; ++i) {
-    std::memcpy(cloud.data.data() + i / 2 * cloud.row_step + i % 2 * cloud.point_step,
-                words.points[i].data(), 3 * sizeof(float));
-  }
-  if (words.has_other_layout) cloud.fields[1].offset = cloud.fields[2].offset = 0;
-  cloud.stamp_ns = words.stamp_ns;
-  cloud.frame = words.parent;
-  Message made;
-  made.topic = topic("/eye/points", "sensor_msgs/msg/PointCloud2");
-  made.cdr = cloud.cdr();
-  return made;
-}
-
 std::uint32_t LyingSenders::topic(const std::string& name, const std::string& type) {
   const auto found = intake_.topic({name, type});
   EXPECT_TRUE(found) << name;
@@ -281,27 +264,25 @@ void LyingSenders::post(Message message, std::int64_t t, const Told& told, Chann
   message.sent_ns = start_ns_ + t;
   const auto delay = static_cast<std::int64_t>(
       random_.unit() * static_cast<double>(std::max(sending_.jitter, told.longest_delay)));
-  message.due = t + delay;
+  message.due = std::max(t + delay, told.held_until);
   if (told.longest_delay == 0) message.due = last_due_[i] = std::max(message.due, last_due_[i]);
   if (told.is_repeated) {
     for (const std::int64_t later : {std::int64_t{0}, 3 * kMs, 40 * kMs}) {
       Message again = message;
       again.due += later;
-      under_way_.push_back(std::move(again));
+      under_way_.emplace(again.due, std::move(again));
     }
   }
-  under_way_.push_back(std::move(message));
+  under_way_.emplace(message.due, std::move(message));
 }
 
 void LyingSenders::deliver(std::int64_t t) {
   const Now now{.realtime_ns = start_ns_ + t, .monotonic_ns = kSecond + t};
-  const auto waits = std::stable_partition(under_way_.begin(), under_way_.end(),
-                                           [t](const Message& each) { return each.due <= t; });
-  std::stable_sort(under_way_.begin(), waits,
-                   [](const Message& a, const Message& b) { return a.due < b.due; });
+  const auto waits = under_way_.upper_bound(t);
   for (auto each = under_way_.begin(); each != waits; ++each) {
+    const Message& sent = each->second;
     EXPECT_TRUE(intake_.take(
-        {.topic = each->topic, .cdr = each->cdr, .sent_ns = each->sent_ns, .writer = each->writer},
+        {.topic = sent.topic, .cdr = sent.cdr, .sent_ns = sent.sent_ns, .writer = sent.writer},
         now));
   }
   under_way_.erase(under_way_.begin(), waits);

@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <map>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,17 +44,23 @@ class LyingSenders {
     std::int64_t sent_ns = 0;
     std::vector<std::byte> cdr;
   };
+  static constexpr std::uint64_t kCameraDriver = 301;  // the writer of CameraInfo
   // The message of one writer on a channel.
   struct Words {
     TruePose pose = TruePose::Identity();
     Twist twist;
-    std::array<TrueJoint, kJoints> joints{};
-    std::size_t told_joints = kJoints;  // the first ones
+    std::array<TrueJoint, kJoints + 1> joints{};  // the last one is the first one again
+    std::size_t told_joints = kJoints;            // the first ones
     bool has_velocities = false, is_static = false;
     double quaternion_scale = 1.0;
-    std::string parent;  // of a frame, or of points
+    bool has_too_few = false;
+    std::string parent;  // of a frame, or of what is seen
     std::array<Eigen::Vector3f, kSeenPoints> points{};
-    bool has_other_layout = false, is_padded = false;
+    std::vector<std::uint16_t> depths = {};  // of the picture, mm
+    TruePoint walker = TruePoint::Zero();    // in the frame of the map
+    double scale = 1.0;                      // of the map's cubes
+    bool is_empty = false;                   // the map
+    bool has_other_layout = false, is_padded = false, is_torn = false;
     std::int64_t stamp_ns = 0;
   };
 
@@ -66,7 +73,11 @@ class LyingSenders {
   [[nodiscard]] Message poses(Channel channel, const Words& words, bool is_rival);
   [[nodiscard]] Message joint_states(Channel channel, const Words& words, bool is_rival);
   [[nodiscard]] Message frames(Channel channel, const Words& words);
-  [[nodiscard]] Message picture(const Words& words);
+  void see(Channel channel, const Told& told, std::int64_t t, Words& words) const;
+  [[nodiscard]] Message seen(Channel channel, const Words& words);
+  [[nodiscard]] Message camera_info(std::int64_t t);
+  [[nodiscard]] Message message_of(const char* name, const char* type,
+                                   const std::vector<std::byte>& cdr);
   void post(Message message, std::int64_t t, const Told& told, Channel channel);
   void deliver(std::int64_t t);
   [[nodiscard]] std::uint32_t topic(const std::string& name, const std::string& type);
@@ -83,7 +94,7 @@ class LyingSenders {
   std::array<bool, 2> by_ros_{};  // arm and post
   std::array<std::int64_t, kChannels> period_{}, last_due_{};
   std::array<std::uint64_t, 2 * kChannels> sequence_{};
-  std::vector<Message> under_way_;
+  std::multimap<std::int64_t, Message> under_way_;  // by Message::due, in the order of sending
   std::vector<std::uint64_t> writers_;
 };
 

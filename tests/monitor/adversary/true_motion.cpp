@@ -1,8 +1,11 @@
 #include "tests/monitor/adversary/true_motion.hpp"
 
 #include <Eigen/Geometry>
+#include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
+#include <utility>
 
 #include "tests/shared/random.hpp"
 
@@ -39,9 +42,11 @@ TruePoint moved(const TruePose& pose, Real x, Real y, Real z) {
   return (pose * Eigen::Matrix<Real, 4, 1>(x, y, z, 1)).head<3>();
 }
 
-// The centres of a robot's links, by the origins of its description.
-void add_links(const TruePose& world_from_foot, const std::array<TrueJoint, kJoints>& joints,
-               std::size_t first, std::array<TruePoint, kBodies>& centres) {
+TruePoint point(const std::array<double, 3>& p) { return {p[0], p[1], p[2]}; }
+
+// The centres of a robot's links, by the origins of its description. Returns the frame of its tip.
+TruePose add_links(const TruePose& world_from_foot, const std::array<TrueJoint, kJoints>& joints,
+                   std::size_t first, std::array<TruePoint, kBodies>& centres) {
   TruePose link = world_from_foot;
   centres[first] = moved(link, 0, 0, 0);
   link = link * translation(0, 0, 0.4L) * rotation(2, joints[0].position);
@@ -52,6 +57,15 @@ void add_links(const TruePose& world_from_foot, const std::array<TrueJoint, kJoi
   centres[first + 3] = moved(link, 0.1L, 0.15L, 0);
   link = link * translation(0.2L + joints[3].position, 0, 0);
   centres[first + 4] = moved(link, 0.1L, 0.1L, 0);
+  return link;
+}
+
+// From a point to the part of the plate that is in the picture.
+Real distance_to_plate(const TruePoint& from, Real depth) {
+  const TruePoint off = from - point(kLensPlace);
+  const Real beside_x = std::abs(off.x()) - 0.5L * kColumns / kFocal * depth;
+  const Real beside_y = std::abs(off.y()) - 0.5L * kRows / kFocal * depth;
+  return TruePoint(std::max(beside_x, 0.0L), std::max(beside_y, 0.0L), off.z() + depth).norm();
 }
 
 }  // namespace
@@ -131,8 +145,17 @@ const std::array<TruePoint, kSeenPoints>& TrueMotion::seen_points() {
   return kPoints;
 }
 
-std::array<TruePoint, kBodies> TrueMotion::centres(std::int64_t t) const {
-  std::array<TruePoint, kBodies> centres;
+Real TrueMotion::plate_depth(std::int64_t t) {
+  return 2.9L + 0.35L * std::sin(0.9L * in_seconds(t));
+}
+
+TruePoint TrueMotion::walker(std::int64_t t) {
+  const Real s = in_seconds(t);
+  return {-3.3L + 0.2L * std::sin(1.1L * s), 0.5L * std::sin(0.8L * s), 0.65L};
+}
+
+TrueMotion::Centres TrueMotion::centres(std::int64_t t) const {
+  Centres centres;
   for (std::size_t i = 0; i < 3; ++i) {
     centres[i] = moved(pose(static_cast<Channel>(i), t), 0.15L, 0, 0);
   }
@@ -140,15 +163,40 @@ std::array<TruePoint, kBodies> TrueMotion::centres(std::int64_t t) const {
   centres[kFollowerBody] = moved(odom * pose(Channel::kFollower, t), 0.15L, 0, 0);
   centres[kRockBody] = {1.0L, 1.3L, 0.3L};
   centres[kEyeBody] = seen_points()[0];
-  add_links(odom * pose(Channel::kBase, t), joints(Channel::kArm, t), kArmBody, centres);
-  add_links(translation(2.6L, 0.4L, 0), joints(Channel::kPost, t), kPostBody, centres);
+  const TruePose tip =
+      add_links(odom * pose(Channel::kBase, t), joints(Channel::kArm, t), kArmBody, centres);
+  static_cast<void>(
+      add_links(translation(2.6L, 0.4L, 0), joints(Channel::kPost, t), kPostBody, centres));
+  centres[kLensBody] = point(kLensPlace) - TruePoint(0, 0, plate_depth(t));
+  centres[kMapBody] = walker(t);
+  centres[kPartBody] = point(kPartPlace);
+  if (carries(t)) centres[kPartBody] = moved(tip, kTipFromPart[0], kTipFromPart[1], 0);
+  if (carried_to_ > 0 && t >= carried_to_) centres[kPartBody] = put_down_;
   return centres;
+}
+
+void TrueMotion::carry(std::int64_t from, std::int64_t to) {
+  carried_from_ = from, carried_to_ = to + 1;
+  put_down_ = centres(to)[kPartBody];
+  carried_to_ = to;
+}
+
+Real TrueMotion::distance(std::size_t a, std::size_t b, const Centres& centres) {
+  const Real radii = radius(a) + radius(b);
+  if (a == kEyeBody || a == kLensBody) std::swap(a, b);
+  if (b == kLensBody) return distance_to_plate(centres[a], kLensPlace[2] - centres[b].z()) - radii;
+  if (b != kEyeBody) return (centres[a] - centres[b]).norm() - radii;
+  Real least = std::numeric_limits<Real>::infinity();
+  for (const TruePoint& seen : seen_points())
+    least = std::min(least, (centres[a] - seen).norm() - radii);
+  return least;
 }
 
 double TrueMotion::radius(std::size_t body) {
   constexpr std::array<double, kLinks> kRadii{0.12, 0.1, 0.09, 0.08, 0.06};
   if (body < kRockBody) return 0.1;
-  if (body == kEyeBody) return 0.0;
+  if (body == kPartBody) return 0.05;
+  if (body >= kEyeBody) return 0.0;
   return body == kRockBody ? 0.2 : kRadii[(body - kArmBody) % kLinks];
 }
 
@@ -156,7 +204,8 @@ double TrueMotion::radius(std::size_t body) {
 double TrueMotion::fastest(std::size_t body) {
   constexpr std::array<double, kLinks> kByJoints{0.0, 0.5, 2.3, 3.7, 4.7};
   if (body < kRockBody) return kBallSpeed;
-  if (body == kRockBody || body == kPostBody || body == kEyeBody) return 0.0;
+  if (body == kRockBody || body == kPostBody || (body >= kEyeBody && body != kPartBody)) return 0.0;
+  if (body == kPartBody) return kBaseSpeed + 5.3;  // the part is farther out than the tip
   return (body < kPostBody ? kBaseSpeed : 0.0) + kByJoints[(body - kArmBody) % kLinks];
 }
 

@@ -32,12 +32,22 @@ class TrueMotion {
   // `robot` is kArm or kPost.
   [[nodiscard]] std::array<TrueJoint, kJoints> joints(Channel robot, std::int64_t t) const;
 
+  // The arm has the part in its hand for this time, and puts it down where it then is.
+  void carry(std::int64_t from, std::int64_t to);
+  [[nodiscard]] bool carries(std::int64_t t) const { return t >= carried_from_ && t < carried_to_; }
+
   // The points that the camera sees: at rest, in the world, m.
   [[nodiscard]] static const std::array<TruePoint, kSeenPoints>& seen_points();
+  // The depth of the plate before the lens, m.
+  [[nodiscard]] static long double plate_depth(std::int64_t t);
+  // The place of the person in the map, who is a point, in the world, m.
+  [[nodiscard]] static TruePoint walker(std::int64_t t);
   // The centres of all bodies in the world, m; of what the camera sees, the first point.
-  [[nodiscard]] std::array<TruePoint, kBodies> centres(std::int64_t t) const;
+  using Centres = std::array<TruePoint, kBodies>;
+  [[nodiscard]] Centres centres(std::int64_t t) const;
+  [[nodiscard]] static long double distance(std::size_t a, std::size_t b, const Centres& centres);
   [[nodiscard]] static double radius(std::size_t body);
-  // No centre of the body is faster, m/s.
+  // No centre of the body is faster, m/s; what is seen: beside the stated speed of its sensor.
   [[nodiscard]] static double fastest(std::size_t body);
 
  private:
@@ -50,6 +60,8 @@ class TrueMotion {
   std::array<Orbit, 4> orbits_;  // three balls and the follower
   std::array<std::array<long double, kJoints>, 2> phases_{};
   long double base_phase_ = 0, turned_ = 0;
+  std::int64_t carried_from_ = 0, carried_to_ = 0;
+  TruePoint put_down_ = TruePoint::Zero();
 };
 
 [[nodiscard]] Pose as_pose(const TruePose& pose);

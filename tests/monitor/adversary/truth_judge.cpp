@@ -25,6 +25,9 @@ constexpr double kLever = 2.1;
 // knows them, whose radius is the stated error of the depth.
 constexpr double kSight = 2.0;
 constexpr double kSeenRadius = 0.002 * 1.001;
+// Upper bounds are those of elements: a pixel reaches as far as its error and noise, along a ray at
+// the picture's corner, and a cube of the map from corner to corner.
+constexpr double kPixelReach = 1.12 * 0.0145, kCubeReach = 1.7321 * kCube;
 
 bool is_link_of(Channel robot, std::size_t body) {
   const std::size_t foot = robot == Channel::kPost ? kPostBody : kArmBody;
@@ -35,6 +38,9 @@ bool rests_on(std::size_t body, Channel channel) {
   if (is_ball(channel)) return body == static_cast<std::size_t>(channel);
   if (channel == Channel::kFollower) return body == kFollowerBody;
   if (channel == Channel::kEye || channel == Channel::kPoints) return body == kEyeBody;
+  if (channel == Channel::kPicture) return body == kLensBody;
+  if (channel == Channel::kMap) return body == kMapBody;
+  if (!is_sent(channel)) return false;
   if (channel == Channel::kBase) return is_link_of(Channel::kArm, body);
   if (channel == Channel::kOdom) return body == kFollowerBody || is_link_of(Channel::kArm, body);
   return is_link_of(channel, body) && body != kArmBody && body != kPostBody;
@@ -47,18 +53,25 @@ double slack_of(Channel channel) {
     return kBaseSpeed * 1e-9 * static_cast<double>(kBaseAgeLimit);
   if (channel == Channel::kEye || channel == Channel::kPoints)
     return (1.0 + kSight) * kEyeSpeed * 1e-9 * static_cast<double>(kEyeAgeLimit);
+  if (is_seen(channel)) return kSeenSpeed * 1e-9 * static_cast<double>(kEyeAgeLimit);
   return kBallSpeed * 1e-9 * static_cast<double>(kAgeLimit);
 }
 
 std::int64_t age_limit_of(std::size_t body) {
-  return is_link_of(Channel::kArm, body) ? kBaseAgeLimit : kAgeLimit;
+  return is_link_of(Channel::kArm, body) || body == kPartBody ? kBaseAgeLimit : kAgeLimit;
+}
+
+// How much nearer than the truth an upper bound may be, m.
+double reach_of(std::size_t body) {
+  return body == kLensBody ? kPixelReach : body == kMapBody ? kCubeReach : 0.0;
 }
 
 }  // namespace
 
 const char* name(Claim claim) {
-  constexpr std::array<const char*, kClaims> kNames{"lower", "upper",      "swept lower", "minimum",
-                                                    "zone",  "separation", "speed",       "answer"};
+  constexpr std::array<const char*, kClaims> kNames{
+      "lower",      "upper", "swept lower", "minimum", "zone",
+      "separation", "speed", "answer",      "command", "partner"};
   return kNames[static_cast<std::size_t>(claim)];
 }
 
@@ -76,29 +89,43 @@ std::string Verdict::text() const {
   }
   text += fmt::format("  questions: {} asked, {} answered, {} free; {}\n", asked, answered, free,
                       refusal);
+  text += fmt::format("  known again {} ms after the last fault\n", recovered / kMs);
   return text + fmt::format("  certified in {:.2f} % of pairs and ticks, {} in {:.2f} %\n",
                             100.0 * certified, least_pair, 100.0 * least_certified);
 }
 
 TruthJudge::TruthJudge(const Scene& scene, const TrueMotion& truth,
                        const std::vector<Fault>& faults)
-    : scene_(scene),
-      truth_(truth),
-      faults_(faults),
-      was_known_(scene.pairs.size(), 0),
-      used_(scene.pairs.size(), 0.0),
-      used_since_(scene.pairs.size(), 0.0),
-      certified_(scene.pairs.size(), 0),
-      judged_(scene.pairs.size(), 0) {
+    : truth_(truth), faults_(faults) {
+  change(scene);
+  for (const Fault& fault : faults) {
+    if (fault.lie == Lie::kWrapped) continue;  // there is nothing to recover from
+    ended_ = std::max(ended_, fault.to);
+    available_from_ = std::max(available_from_, fault.to + kRecovers);
+  }
+}
+
+void TruthJudge::change(const Scene& scene) {
+  scene_ = &scene;
+  const std::size_t pairs = scene.pairs.size();
+  was_known_.assign(pairs, 0);
+  used_.assign(pairs, 0.0);
+  used_since_.assign(pairs, 0.0);
+  certified_.assign(pairs, 0);
+  judged_.assign(pairs, 0);
+  known_since_.assign(pairs, 0);
+  body_.clear();
   for (const Object& object : scene.objects) {
     std::size_t body = 0;
     while (object.name != body_name(body)) ++body;
     body_.push_back(body);
   }
-  for (const Fault& fault : faults) {
-    if (fault.lie == Lie::kWrapped) continue;  // there is nothing to recover from
-    available_from_ = std::max(available_from_, fault.to + kRecovers);
-  }
+}
+
+void TruthJudge::await_command(std::size_t body, std::int64_t since) {
+  awaited_body_ = body;
+  if (t_ > since + kCommandTakes)
+    note_false(Claim::kCommand, 1e-9 * static_cast<double>(t_ - since - kCommandTakes), "waits");
 }
 
 void TruthJudge::judge(const Report& report, std::int64_t t) {
@@ -120,8 +147,9 @@ void TruthJudge::find_allowed(std::int64_t t) {
     for (std::size_t body = 0; body < kBodies; ++body) {
       if (!rests_on(body, fault.channel)) continue;
       Allowed& of = allowed_[body];
-      // A late picture is in use for another second, since what it shows has a stated speed.
-      const std::int64_t ends = kSlackEnds + (body == kEyeBody ? kSecond : 0);
+      // A late picture that tf has not placed is in use for another second: its speed is stated.
+      const bool may_be_late = body == kLensBody || body == kMapBody;
+      const std::int64_t ends = kSlackEnds + (may_be_late ? kSecond : 0);
       if (t >= fault.from && t < fault.to + ends)
         of.error += admitted.slack * slack_of(fault.channel);
       of.is_excused |= t >= fault.from && t < fault.from + admitted.delay;
@@ -130,6 +158,17 @@ void TruthJudge::find_allowed(std::int64_t t) {
       of.is_speed_excused |= t >= fault.to && t < fault.to + delay;
     }
   }
+  if (truth_.carries(t)) allowed_[kPartBody] = allowed_[kArmBody + kLinks - 1];
+  // Until a command is in force, the report is of the scene before (idl/COMMANDS.md). Nothing is
+  // where an absent object was.
+  if (awaited_body_ < kBodies) allowed_[awaited_body_].is_excused = true;
+  for (std::size_t i = 0; i < body_.size(); ++i)
+    allowed_[body_[i]].is_excused |= scene_->objects[i].absent;
+}
+
+bool TruthJudge::moves_with(std::size_t body, Channel robot) const {
+  return is_link_of(robot, body) ||
+         (body == kPartBody && robot == Channel::kArm && truth_.carries(t_));
 }
 
 // Bounds hold for the poses in use, whose ages the report states. Those of a late object include
@@ -142,23 +181,17 @@ double TruthJudge::allowed(std::uint32_t pair, std::int64_t age_a, std::int64_t 
                             : 0.0;
     return aged + allowed_[body].error + (body == kEyeBody ? kSeenRadius : 0.0);
   };
-  return kRounding + of(scene_.pairs[pair].first, age_a) + of(scene_.pairs[pair].second, age_b);
+  return kRounding + of(scene_->pairs[pair].first, age_a) + of(scene_->pairs[pair].second, age_b);
 }
 
 bool TruthJudge::is_excused(std::uint32_t pair) const {
-  return allowed_[body_[scene_.pairs[pair].first]].is_excused ||
-         allowed_[body_[scene_.pairs[pair].second]].is_excused;
+  return allowed_[body_[scene_->pairs[pair].first]].is_excused ||
+         allowed_[body_[scene_->pairs[pair].second]].is_excused;
 }
 
 long double TruthJudge::distance(std::uint32_t pair, const Centres& centres) const {
-  const std::size_t a = body_[scene_.pairs[pair].first], b = body_[scene_.pairs[pair].second];
-  const double radii = TrueMotion::radius(a) + TrueMotion::radius(b);
-  if (a != kEyeBody && b != kEyeBody) return (centres[a] - centres[b]).norm() - radii;
-  const TruePoint& other = centres[a == kEyeBody ? b : a];
-  long double least = std::numeric_limits<long double>::infinity();
-  for (const TruePoint& seen : TrueMotion::seen_points())
-    least = std::min(least, (other - seen).norm() - radii);
-  return least;
+  const ObjectPair& of = scene_->pairs[pair];
+  return TrueMotion::distance(body_[of.first], body_[of.second], centres);
 }
 
 long double TruthJudge::least_since(std::uint32_t pair) const {
@@ -172,6 +205,7 @@ void TruthJudge::judge_pair(const PairReport& pair) {
   const double before = used_[pair.pair];
   used_[pair.pair] = allowed(pair.pair, pair.age_a_ns, pair.age_b_ns);
   used_since_[pair.pair] = std::max(before, used_[pair.pair]);
+  note_known(pair);
   if (t_ >= available_from_) {
     ++judged_[pair.pair];
     certified_[pair.pair] += pair.status <= PairStatus::kCarried;
@@ -184,21 +218,32 @@ void TruthJudge::judge_pair(const PairReport& pair) {
     return fmt::format(
         "{} is {}: {:.4f} to {:.4f}, swept {:.4f}; true {:.4f}, since {:.4f}; "
         "ages {} and {} ms, allowed {:.4f}",
-        pair_name(scene_, pair.pair), name(pair.status), pair.lower, pair.upper, pair.swept_lower,
+        pair_name(*scene_, pair.pair), name(pair.status), pair.lower, pair.upper, pair.swept_lower,
         truth, since, pair.age_a_ns / kMs, pair.age_b_ns / kMs, error);
   };
   const auto since = static_cast<double>(least_since(pair.pair));
   if (pair.lower > truth + error)
     note_false(Claim::kLower, pair.lower - truth - error, said(since));
-  if (pair.upper < truth - error)
-    note_false(Claim::kUpper, truth - error - pair.upper, said(since));
+  const ObjectPair& of = scene_->pairs[pair.pair];
+  const double nearer = error + reach_of(body_[of.first]) + reach_of(body_[of.second]);
+  if (pair.upper < truth - nearer)
+    note_false(Claim::kUpper, truth - nearer - pair.upper, said(since));
   const double error_since = used_since_[pair.pair] + kBend;
   if (was_known && pair.swept_lower > since + error_since)
     note_false(Claim::kSwept, pair.swept_lower - since - error_since, said(since));
 }
 
+void TruthJudge::note_known(const PairReport& pair) {
+  std::int64_t& since = known_since_[pair.pair];
+  if (t_ < ended_ || since == kSettledOnce) return;
+  if (since < ended_ || pair.status > PairStatus::kCarried) since = t_;
+  if (t_ < since + kSettled) return;
+  verdict_.recovered = std::max(verdict_.recovered, since - ended_);
+  since = kSettledOnce;
+}
+
 void TruthJudge::judge_minimum(const Report& report) {
-  for (std::uint32_t pair = 0; pair < scene_.pairs.size(); ++pair) {
+  for (std::uint32_t pair = 0; pair < scene_->pairs.size(); ++pair) {
     if (is_excused(pair)) continue;
     const auto truth = static_cast<double>(distance(pair, centres_[0]));
     double claimed = report.lower_all;
@@ -207,24 +252,32 @@ void TruthJudge::judge_minimum(const Report& report) {
     if (by > 0.0) {
       note_false(Claim::kMinimum, by,
                  fmt::format("all pairs are above {:.4f}, {} is at {:.4f}", claimed,
-                             pair_name(scene_, pair), truth));
+                             pair_name(*scene_, pair), truth));
     }
   }
 }
 
 void TruthJudge::judge_zone(const Report& report, std::size_t zone) {
   if (report.zones[zone].active) return;
-  const Zone& levels = scene_.zones[zone];
+  const Zone& levels = scene_->zones[zone];
   for (const std::uint32_t pair : levels.pairs) {
     if (is_excused(pair)) continue;
-    const double inside = levels.enter_below - static_cast<double>(least_since(pair));
+    const double inside = enter_below(levels, pair) - static_cast<double>(least_since(pair));
     const double by = inside - used_since_[pair] - kBend;
     if (by > 0.0) {
       note_false(Claim::kZone, by,
                  fmt::format("zone '{}' is not active, {} is inside by {:.4f}", levels.name,
-                             pair_name(scene_, pair), inside));
+                             pair_name(*scene_, pair), inside));
     }
   }
+}
+
+// A contact that the scene allows is in the zone only if it is too deep.
+double TruthJudge::enter_below(const Zone& zone, std::uint32_t pair) const {
+  for (const AllowedContact& contact : scene_->contacts) {
+    if (std::ranges::count(contact.pairs, pair) != 0) return -contact.depth;
+  }
+  return zone.enter_below;
 }
 
 void TruthJudge::judge_separation(const PairSeparation& pair) {
@@ -234,11 +287,11 @@ void TruthJudge::judge_separation(const PairSeparation& pair) {
   if (by > 0.0) {
     note_false(Claim::kSeparation, by,
                fmt::format("{} has a clearance of {:.4f}, true {:.4f}",
-                           pair_name(scene_, pair.pair), pair.clearance, truth));
+                           pair_name(*scene_, pair.pair), pair.clearance, truth));
   }
   if (pair.validity != SeparationValidity::kMeasured) return;
-  const std::size_t first = body_[scene_.pairs[pair.pair].first];
-  const std::size_t second = body_[scene_.pairs[pair.pair].second];
+  const std::size_t first = body_[scene_->pairs[pair.pair].first];
+  const std::size_t second = body_[scene_->pairs[pair.pair].second];
   if (allowed_[first].is_speed_excused || allowed_[second].is_speed_excused) return;
   const std::size_t human = first == 0 ? first : second, robot = first == 0 ? second : first;
   const TruePoint between = centres_[0][robot] - centres_[0][human];
@@ -252,7 +305,7 @@ void TruthJudge::judge_separation(const PairSeparation& pair) {
   if (slower > kSpeedError) {
     note_false(Claim::kSpeed, slower - kSpeedError,
                fmt::format("{}: measured {:.3f} and {:.3f} m/s, true {:.3f} and {:.3f}",
-                           pair_name(scene_, pair.pair), pair.human_speed, pair.robot_speed,
+                           pair_name(*scene_, pair.pair), pair.human_speed, pair.robot_speed,
                            human_speed, robot_speed));
   }
 }
@@ -272,14 +325,15 @@ void TruthJudge::judge(const Answer& answer, const std::optional<std::string>& r
   const std::int64_t last = t_ + std::llround(1e9 * times.back());
   for (std::int64_t t = t_; t <= last; t += kMs) {
     const Centres centres = truth_.centres(t);
-    for (std::uint32_t pair = 0; pair < scene_.pairs.size(); ++pair) {
-      const std::array bodies{body_[scene_.pairs[pair].first], body_[scene_.pairs[pair].second]};
+    for (std::uint32_t pair = 0; pair < scene_->pairs.size(); ++pair) {
+      const std::array bodies{body_[scene_->pairs[pair].first], body_[scene_->pairs[pair].second]};
       double error = kPathError;
       bool is_of_robot = false, is_excused = false;
       for (const std::size_t body : bodies) {
-        const bool is_link = is_link_of(Channel::kArm, body) || is_link_of(Channel::kPost, body);
+        const bool is_of_arm = moves_with(body, Channel::kArm);
+        const bool is_link = is_of_arm || is_link_of(Channel::kPost, body);
         is_of_robot |= is_link;
-        const bool is_of_arm = is_link && !is_link_of(Channel::kPost, body);
+        is_excused |= body == awaited_body_;
         if (is_of_arm) error += kBaseSpeed * 1e-9 * static_cast<double>(t - t_ + kBaseAgeLimit);
         if (is_link && !is_of_arm) continue;
         const Allowed& of = allowed_[is_of_arm ? kArmBody : body];
@@ -292,8 +346,8 @@ void TruthJudge::judge(const Answer& answer, const std::optional<std::string>& r
       if (by <= 0.0) continue;
       note_false(Claim::kAnswer, by,
                  fmt::format("{}: at least {:.4f}, {} is at {:.4f} after {} ms",
-                             is_free ? "free" : "not free", claimed, pair_name(scene_, pair), truth,
-                             (t - t_) / kMs));
+                             is_free ? "free" : "not free", claimed, pair_name(*scene_, pair),
+                             truth, (t - t_) / kMs));
     }
   }
 }
@@ -306,15 +360,19 @@ void TruthJudge::note_false(Claim claim, double by, const std::string& what) {
 
 Verdict TruthJudge::verdict() const {
   Verdict verdict = verdict_;
+  const bool is_late = t_ > available_from_ && std::ranges::any_of(known_since_, [](auto since) {
+                         return since != kSettledOnce;
+                       });
+  if (is_late) verdict.recovered = t_ - ended_;
   std::uint64_t certified = 0, judged = 0;
-  for (std::uint32_t pair = 0; pair < scene_.pairs.size(); ++pair) {
+  for (std::uint32_t pair = 0; pair < scene_->pairs.size(); ++pair) {
     if (judged_[pair] == 0) continue;
     certified += certified_[pair];
     judged += judged_[pair];
     const double share = static_cast<double>(certified_[pair]) / static_cast<double>(judged_[pair]);
     if (verdict.least_pair.empty() || share < verdict.least_certified) {
       verdict.least_certified = share;
-      verdict.least_pair = pair_name(scene_, pair);
+      verdict.least_pair = pair_name(*scene_, pair);
     }
   }
   if (judged > 0) verdict.certified = static_cast<double>(certified) / static_cast<double>(judged);

@@ -28,6 +28,8 @@ enum class Claim : std::uint8_t {
   kSeparation,  // the clearance of a separation
   kSpeed,       // a speed that is said to be measured
   kAnswer,      // the lower bound of a question's answer, or its 'free'
+  kCommand,     // a command is not in force in time
+  kPartner,     // a partner that goes on from the saved state tells other bits
   kCount
 };
 inline constexpr auto kClaims = static_cast<std::size_t>(Claim::kCount);
@@ -44,6 +46,8 @@ struct Verdict {
   // again: of all pairs, and of the worst one.
   double certified = 1.0, least_certified = 1.0;
   std::string least_pair;
+  // The longest time from the last fault's end until a pair is certified for kSettled, ns.
+  std::int64_t recovered = 0;
   std::uint64_t asked = 0, answered = 0, free = 0;  // questions
   std::string refusal;                              // of the last one that has no answer
 
@@ -57,12 +61,25 @@ class TruthJudge {
   // contradiction of velocities takes 51 age limits, which is a second, and a source that was there
   // first is given up after one.
   static constexpr std::int64_t kRecovers = 2 * kSecond;
+  static constexpr std::int64_t kSettled = 100 * kMs;
+  // Until it is in force, a command changes nothing, and the successor may wait so many ticks until
+  // all its pairs are certified (Successor::kMostUncertified).
+  static constexpr std::int64_t kCommandTakes = 300 * kMs;
   // The time from the start after which a cell without faults has heard everything.
   static constexpr std::int64_t kStarts = kSecond / 2;
 
   // All must outlive this.
   TruthJudge(const Scene& scene, const TrueMotion& truth, const std::vector<Fault>& faults);
 
+  // The reports that follow are of this scene, which must outlive this.
+  void change(const Scene& scene);
+  // Something of this body is changed in truth, by a command that is not in force yet; kBodies: no
+  // such command.
+  void await_command(std::size_t body, std::int64_t since);
+  // The reports of two partners differ.
+  void note_partner(std::uint64_t cycle) {
+    note_false(Claim::kPartner, 1.0, "cycle " + std::to_string(cycle));
+  }
   // `t` is the time of the tick, ns since the start.
   void judge(const Report& report, std::int64_t t);
   // Judges the answer about the true motion of both robots, which begins at the last tick. If there
@@ -78,7 +95,7 @@ class TruthJudge {
     double error = 0.0;  // m
     bool is_speed_excused = false;
   };
-  using Centres = std::array<TruePoint, kBodies>;
+  using Centres = TrueMotion::Centres;
 
   void find_allowed(std::int64_t t);
   [[nodiscard]] double allowed(std::uint32_t pair, std::int64_t age_a, std::int64_t age_b) const;
@@ -91,11 +108,16 @@ class TruthJudge {
   void judge_separation(const PairSeparation& pair);
   void note_false(Claim claim, double by, const std::string& what);
 
-  const Scene& scene_;
+  [[nodiscard]] bool moves_with(std::size_t body, Channel robot) const;
+  [[nodiscard]] double enter_below(const Zone& zone, std::uint32_t pair) const;
+  void note_known(const PairReport& pair);
+
+  const Scene* scene_ = nullptr;
   const TrueMotion& truth_;
   const std::vector<Fault>& faults_;
   std::vector<std::size_t> body_;  // by object
-  std::int64_t t_ = 0, available_from_ = kStarts;
+  std::int64_t t_ = 0, ended_ = 0, available_from_ = kStarts;
+  std::size_t awaited_body_ = kBodies;  // await_command()
   // The bodies in this tick, in the middle of the time since the last one, and in the last one.
   std::array<Centres, 3> centres_{};
   std::array<Allowed, kBodies> allowed_{};
@@ -103,6 +125,9 @@ class TruthJudge {
   // By pair: what is allowed at its ages, m, in this tick; and in the last one, if that is more.
   std::vector<double> used_, used_since_;
   std::vector<std::uint64_t> certified_, judged_;  // ticks by pair
+  // By pair: it is certified since then; kSettledOnce: it has been so for kSettled.
+  static constexpr std::int64_t kSettledOnce = -1;
+  std::vector<std::int64_t> known_since_;
   Verdict verdict_;
 };
 

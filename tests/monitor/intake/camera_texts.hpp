@@ -84,4 +84,15 @@ struct CloudText {
   }
 };
 
+// An octomap in its binary form.
+inline std::vector<std::byte> map_cdr(const std::string& tree, std::int64_t stamp_ns,
+                                      const std::string& id, const std::string& frame,
+                                      double resolution) {
+  RosCdr out;
+  out.header(stamp_ns, frame).number(std::uint8_t{1}).text(id).number(resolution);
+  out.number(static_cast<std::uint32_t>(tree.size()));
+  for (const char byte : tree) out.number(byte);
+  return out.bytes();
+}
+
 }  // namespace clearance::test::camera

@@ -19,11 +19,7 @@ std::vector<std::byte> map_message(const std::string& bytes, std::int64_t stamp_
                                    const std::string& id = "OcTree",
                                    const std::string& frame = "camera",
                                    double resolution = kResolution) {
-  test::RosCdr out;
-  out.header(stamp_ns, frame).number(std::uint8_t{1}).text(id).number(resolution);
-  out.number(static_cast<std::uint32_t>(bytes.size()));
-  for (const char byte : bytes) out.number(byte);
-  return out.bytes();
+  return test::camera::map_cdr(bytes, stamp_ns, id, frame, resolution);
 }
 
 // The maps of two cubes as one. The cubes are in different children of a node, the first one in the

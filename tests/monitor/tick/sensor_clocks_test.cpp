@@ -104,8 +104,9 @@ TEST_F(SensorClocks, AreInTheStateThatAPartnerGets) {
 // The camera has died. A partner that joins must not wait for a frame that nothing sends again.
 class DeadCamera : public SensorClocks {
  protected:
-  void make(double max_speed) {
+  void make(double max_speed, bool is_on_tf = false) {
     scene.objects[1].max_speed = max_speed;
+    scene.sensors[0].frames_by_message = is_on_tf;
     monitor = std::make_unique<Monitor>(scene);
     age(*monitor, 0, 1, 0);
   }
@@ -153,6 +154,19 @@ TEST_F(DeadCamera, WithAStatedSpeedIsUnknownOnceThatLeadsOutOfItsView) {
   make(0.0);
   tick_at(100.0);
   EXPECT_EQ(status(), PairStatus::kStale) << "nothing that it sees moves";
+}
+
+// What is heard of a mount on tf after a frame may contradict its place.
+TEST_F(DeadCamera, OnTfIsUnknownAsSoonAsItIsLate) {
+  make(0.0, true);
+  tick_at(0.05);
+  EXPECT_EQ(status(), PairStatus::kConverged);
+  tick_at(1.0);
+  EXPECT_EQ(status(), PairStatus::kUnknown);
+  now += 2'000'000'000;
+  EXPECT_EQ(age(*monitor, 0, 1, 0), kAge) << "it is back";
+  tick_at(0.001);
+  EXPECT_EQ(status(), PairStatus::kConverged);
 }
 
 }  // namespace

@@ -3,9 +3,11 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <numeric>
 
 #include "config/scene/chain_rounding.hpp"
 #include "monitor/bodies/bounding_sphere.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
 #include "monitor/bodies/fixed_order.hpp"
 #include "monitor/inputs/joint_batch.hpp"
 #include "monitor/interface/gradient_rows.hpp"
@@ -52,7 +54,9 @@ Configurations::Configurations(const Scene& scene)
       known_(scene.objects.size()),
       is_link_(scene.objects.size()),
       parts_(parts_of(scene)),
-      first_part_(first_parts(scene)) {
+      first_part_(first_parts(scene)),
+      poses_(scene.objects.size()),
+      spheres_(bounding_spheres(scene.objects.size(), parts_)) {
   for (TrackedVariable& variable : variables_)
     variable.input.has_value = variable.velocity_known = true;
   least_.assign(variables_.size(), -kLargestJoint);
@@ -89,9 +93,16 @@ Configurations::Configurations(const Scene& scene)
   begin();
 }
 
-void Configurations::begin() {
+void Configurations::forget_tracking() noexcept {
   std::ranges::fill(states_, TrackingState());
   for (Pair& pair : pairs_) pair.closest = 0;
+  first_looked_at_ = 0;
+}
+
+void Configurations::begin() {
+  forget_tracking();
+  chosen_.resize(pairs_.size());
+  std::iota(chosen_.begin(), chosen_.end(), 0U);
   for (std::uint32_t i = 0; i < known_.size(); ++i) {
     known_[i] = false;
     if (scene_.objects[i].fixed) put(i, scene_.objects[i].world_from_object);
@@ -101,6 +112,7 @@ void Configurations::begin() {
 
 void Configurations::put(std::uint32_t object, const Pose& pose) noexcept {
   known_[object] = true;
+  poses_[object] = pose;
   for (std::uint32_t part = first_part_[object]; part < first_part_[object + 1]; ++part)
     place_at(pose, parts_[part]);
 }
@@ -152,31 +164,56 @@ void Configurations::query(const Pair& pair, std::uint32_t part_pair, Closest& c
   closest.upper = std::min(closest.upper, bounds.upper);
 }
 
-void Configurations::evaluate(Pair& pair, std::size_t index,
+bool Configurations::is_known(const Pair& pair) const noexcept {
+  return known_[pair.a] && known_[pair.b] && first_part_[pair.a] < first_part_[pair.a + 1] &&
+         first_part_[pair.b] < first_part_[pair.b + 1];
+}
+
+void Configurations::write_unknown(std::size_t index,
+                                   const ConfigurationResults& to) const noexcept {
+  to.distance[index] = kUnknown;
+  to.lower[index] = -kInfinity;
+  to.upper[index] = kInfinity;
+  to.status[index] = static_cast<std::uint8_t>(PairStatus::kUnknown);
+  if (to.part_a != nullptr) to.part_a[index] = to.part_b[index] = 0;
+  for (double* const rows : {to.witness_a, to.witness_b, to.normal})
+    store(rows, index, Vec3::Constant(kUnknown));
+  if (to.gradient != nullptr)
+    std::fill_n(to.gradient + index * variables_.size(), variables_.size(), kUnknown);
+}
+
+void Configurations::evaluate(Pair& pair, std::size_t index, double enough,
                               const ConfigurationResults& to) noexcept {
+  if (!is_known(pair)) return write_unknown(index, to);
   const std::uint32_t first_a = first_part_[pair.a], first_b = first_part_[pair.b];
   const std::uint32_t parts_of_a = first_part_[pair.a + 1] - first_a;
   const std::uint32_t parts_of_b = first_part_[pair.b + 1] - first_b;
   double* const rates = to.gradient == nullptr ? nullptr : to.gradient + index * variables_.size();
-  if (!known_[pair.a] || !known_[pair.b] || parts_of_a * parts_of_b == 0) {
-    to.distance[index] = kUnknown;
-    to.lower[index] = -kInfinity;
-    to.upper[index] = kInfinity;
-    to.status[index] = static_cast<std::uint8_t>(PairStatus::kUnknown);
-    if (to.part_a != nullptr) to.part_a[index] = to.part_b[index] = 0;
-    for (double* const rows : {to.witness_a, to.witness_b, to.normal})
-      store(rows, index, Vec3::Constant(kUnknown));
-    if (rates != nullptr) std::fill_n(rates, variables_.size(), kUnknown);
-    return;
-  }
-  Closest closest;
-  query(pair, pair.closest, closest);
-  for (std::uint32_t i = 0; i < parts_of_a * parts_of_b; ++i) {
-    if (i == pair.closest) continue;
+  const double error = errors_.largest(pair.a, pair.b);
+  const auto apart = [&](std::uint32_t i) {
     const Sphere& a = parts_[first_a + i / parts_of_b].sphere_in_world;
     const Sphere& b = parts_[first_b + i % parts_of_b].sphere_in_world;
-    if (least_between(a, b) <= closest.upper) query(pair, i, closest);
+    return least_between(a, b);
+  };
+  Closest closest;
+  double beyond = kInfinity;  // no part pair that was not queried for being far is nearer, m
+  const auto look = [&](std::uint32_t i) {
+    const double least = apart(i);
+    if (least - error >= enough) {
+      beyond = std::min(beyond, rounded_down(least - error));
+    } else if (least <= closest.upper) {
+      query(pair, i, closest);
+    }
+  };
+  look(pair.closest);
+  for (std::uint32_t i = 0; i < parts_of_a * parts_of_b; ++i)
+    if (i != pair.closest) look(i);
+  if (closest.lower == kInfinity) {
+    write_unknown(index, to);
+    to.lower[index] = beyond;
+    return;
   }
+  closest.lower = std::min(closest.lower, beyond);
   pair.closest = closest.part_pair;
 
   const PosedPart& a = parts_[first_a + closest.part_pair / parts_of_b];
@@ -218,11 +255,43 @@ void Configurations::differentiate(const Pair& pair, const Vec3& on_a, const Vec
   }
 }
 
-void Configurations::evaluate(std::span<const double> joints,
-                              const ConfigurationResults& to) noexcept {
+void Configurations::place(std::span<const double> joints) noexcept {
   for (std::size_t v = 0; v < joints.size(); ++v) variables_[v].position = joints[v];
   place_links();
-  for (std::size_t i = 0; i < pairs_.size(); ++i) evaluate(pairs_[i], i, to);
+}
+
+void Configurations::evaluate(std::span<const double> joints,
+                              const ConfigurationResults& to) noexcept {
+  place(joints);
+  for (std::size_t i = 0; i < chosen_.size(); ++i) evaluate(pairs_[chosen_[i]], i, kInfinity, to);
+}
+
+// The pair that was below the limit in the configuration before comes first.
+Verdict Configurations::decide(std::span<const double> joints, double limit,
+                               const ConfigurationResults& to) noexcept {
+  place(joints);
+  for (std::size_t i = 0; i < chosen_.size(); ++i) write_unknown(i, to);
+  Verdict verdict = Verdict::kFree;
+  for (std::size_t k = 0; k < chosen_.size(); ++k) {
+    const std::size_t i = k == 0 ? first_looked_at_ : k <= first_looked_at_ ? k - 1 : k;
+    Pair& pair = pairs_[chosen_[i]];
+    if (is_known(pair)) {
+      const double apart = rounded_down(least_between(placed(spheres_[pair.a], poses_[pair.a]),
+                                                      placed(spheres_[pair.b], poses_[pair.b])) -
+                                        errors_.largest(pair.a, pair.b));
+      if (apart >= limit) {
+        to.lower[i] = apart;
+        continue;
+      }
+    }
+    evaluate(pair, i, limit, to);
+    if (to.upper[i] < limit) {
+      first_looked_at_ = i;
+      return Verdict::kBelow;
+    }
+    if (!(to.lower[i] >= limit)) verdict = Verdict::kUndecided;
+  }
+  return verdict;
 }
 
 }  // namespace clearance::python

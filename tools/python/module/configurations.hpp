@@ -2,7 +2,7 @@
 //
 // A pair's bounds are those of its parts at the exact poses of forward kinematics, rounding
 // included. Parts whose bounding spheres prove them farther than another part of the pair are not
-// queried. README.md measures it.
+// queried. With a limit, neither are those that are proven to be beyond it. README.md measures it.
 #pragma once
 
 #include <cstdint>
@@ -13,9 +13,11 @@
 #include "config/scene/scene.hpp"
 #include "config/scene/stated_errors.hpp"
 #include "core/distance.hpp"
+#include "monitor/bodies/bounding_sphere.hpp"
 #include "monitor/bodies/forward_kinematics.hpp"
 #include "monitor/bodies/joint_screw.hpp"
 #include "monitor/bodies/posed_part.hpp"
+#include "monitor/interface/question.hpp"
 
 namespace clearance::python {
 
@@ -40,6 +42,10 @@ class Configurations {
   // A new series of configurations: the same series gives the same bits. Poses of objects are
   // forgotten.
   void begin();
+  // The same, with the poses as they are.
+  void forget_tracking() noexcept;
+  // The pairs that count from now on, as indices into Scene::pairs, in the order of the results.
+  void choose(std::span<const std::uint32_t> pairs) { chosen_.assign(pairs.begin(), pairs.end()); }
 
   // The first variable whose position is not finite or not plausible: beyond the joint's limits and
   // their tolerance.
@@ -47,6 +53,11 @@ class Configurations {
 
   // `joints`: plausible positions in the order of Scene::variables. Allocates nothing.
   void evaluate(std::span<const double> joints, const ConfigurationResults& to) noexcept;
+  // Decides whether one of the chosen pairs is nearer than `limit`, m, and stops at the first one
+  // that is. Results of pairs that it did not need have the bounds that it knows, and else those of
+  // an unknown pair.
+  [[nodiscard]] Verdict decide(std::span<const double> joints, double limit,
+                               const ConfigurationResults& to) noexcept;
 
  private:
   // A joint position that moves one object of a pair relative to the other.
@@ -67,10 +78,15 @@ class Configurations {
     DistanceResult found;
   };
 
+  void place(std::span<const double> joints) noexcept;
   void place_links() noexcept;
   void put(std::uint32_t object, const Pose& pose) noexcept;
+  [[nodiscard]] bool is_known(const Pair& pair) const noexcept;
+  void write_unknown(std::size_t index, const ConfigurationResults& to) const noexcept;
   void query(const Pair& pair, std::uint32_t part_pair, Closest& closest) noexcept;
-  void evaluate(Pair& pair, std::size_t index, const ConfigurationResults& to) noexcept;
+  // Parts that are proven to be at least `enough` apart, m, need no query.
+  void evaluate(Pair& pair, std::size_t index, double enough,
+                const ConfigurationResults& to) noexcept;
   void differentiate(const Pair& pair, const Vec3& on_a, const Vec3& on_b, const Vec3& normal,
                      double* rates) noexcept;
 
@@ -83,8 +99,12 @@ class Configurations {
   std::vector<std::uint8_t> known_, is_link_;  // by object
   std::vector<PosedPart> parts_;
   std::vector<std::uint32_t> first_part_;  // by object
+  std::vector<Pose> poses_;                // by object, if known
+  std::vector<BoundingSphere> spheres_;    // likewise
   std::vector<TrackingState> states_;      // by part pair
   std::vector<Pair> pairs_;
+  std::vector<std::uint32_t> chosen_;  // indices into pairs_
+  std::size_t first_looked_at_ = 0;    // index into chosen_: the pair that decided the last time
   std::vector<Term> terms_;
 };
 
