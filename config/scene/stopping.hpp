@@ -26,6 +26,8 @@ class JointStop {
   // The joint stands after this time, s, and goes on until then as fast as at first.
   [[nodiscard]] static JointStop by_time(double time);
 
+  // The largest distance(s) / s of all speeds s up to this one, s.
+  [[nodiscard]] double longest(double speed) const noexcept;
   // From a speed of at least 0.
   [[nodiscard]] double distance(double speed) const noexcept;
   [[nodiscard]] double time(double speed) const noexcept;
@@ -45,6 +47,9 @@ struct RobotStops {
   bool keeps_path = false;  // joints slow down in proportion; else each brakes by itself
   // By joint of the robot; of those that do not move, nothing. Empty: nothing is stated.
   std::vector<JointStop> joints;
+  // By joint of the robot: until the brakes act, its velocity changes by no more than this times
+  // the time, rad/s2 or m/s2. Infinity, or empty: it keeps its velocity.
+  std::vector<double> accelerations;
 
   [[nodiscard]] bool is_stated() const noexcept { return !joints.empty(); }
 };
