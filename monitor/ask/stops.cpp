@@ -381,11 +381,16 @@ void Stops::write_motion(double scaling, StoppingRobot& robot) const noexcept {
                               braking.distance + joint.stop->distance(scaling * back));
       }
     }
-    motion.deviations[j] = deviation > 0.0 ? rounded_up(deviation) : 0.0;
+    // What slides stops at its limits at the latest, and there it leaves the lines.
+    double beyond = 0.0;
     for (std::size_t row = 1; row < rows; ++row) {
-      at(row) = std::clamp(at(row), std::min(joint.lower, joint.position),
-                           std::max(joint.upper, joint.position));
+      const double within = std::clamp(at(row), std::min(joint.lower, joint.position),
+                                       std::max(joint.upper, joint.position));
+      beyond = std::max(beyond, std::abs(at(row) - within));
+      at(row) = within;
     }
+    deviation += beyond;
+    motion.deviations[j] = deviation > 0.0 ? rounded_up(deviation) : 0.0;
   }
 }
 
