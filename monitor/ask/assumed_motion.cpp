@@ -44,6 +44,7 @@ std::optional<std::string> Posture::set_free(const StatedJoint& stated, OthersMo
   if (!(stated.most >= 0.0))
     return "what joint \"" + stated.name + "\" deviates by is not a number from 0 on";
   free.most = std::min(free.most, stated.most);
+  if (free.most == 0.0) free.speed = 0.0;
   if (!std::isfinite(free.speed) && !std::isfinite(free.most)) {
     return "joint \"" + stated.name +
            "\" has neither a limit of its velocity nor of its position: hold it, state its motion, "

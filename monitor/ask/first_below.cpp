@@ -201,7 +201,7 @@ void MotionSearch::find_first(const Stretch& stretch, const OpenList& list,
         note_pair(pair, answer.first, answer.second);
       }
       const bool located = found_ && answer.below_at <= stretch.to &&
-                           answer.below_at - stretch.from <= kInstant * duration_;
+                           answer.below_at - stretch.from <= question_->instant * duration_;
       if (near || unclear || located || !divides) {
         note_uncertain(pair);
         continue;

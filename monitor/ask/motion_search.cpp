@@ -175,7 +175,7 @@ MotionSearch::Pair MotionSearch::pair_at(std::uint32_t pair, const TipMotion& mo
     approach_ = *approach;
     Nearing& nearing = approach_.nearing;
     Nearing of_base;
-    if (bundle.base_is_link) {
+    if (bundle.base_is_link && posture_.may_deviate(base.object)) {
       of_base = posture_.chains().nearing(bundle.chain, base.object, base.sphere_in_world,
                                           posture_.bounds(), posture_.free_variables());
     }

@@ -45,6 +45,7 @@ Posture::Posture(const Scene& scene)
       variables_(scene.variables.size()),
       bounds_(scene.variables.size() + 2 * scene.robots.size()),
       kinematics_(scene.robots),
+      moves_(scene.robots.size(), 0),
       bases_(scene.robots.size()),
       robot_of_object_(scene.objects.size(), kNoLink),
       link_of_object_(scene.objects.size(), kNoLink),
@@ -93,6 +94,7 @@ std::optional<std::string> Posture::take(const Question& question) {
   free_carriers(question);
   note_free();
   place_bases();
+  note_moving();
   return std::nullopt;
 }
 
@@ -309,6 +311,18 @@ void Posture::place_resting(std::uint32_t object) noexcept {
   }
 }
 
+// The robots whose links are elsewhere at other instants.
+void Posture::note_moving() noexcept {
+  is_placed_ = false;
+  std::ranges::fill(moves_, std::uint8_t{0});
+  for (const std::uint32_t moved : trajectory_.moved()) moves_[scene_.variables[moved].robot] = 1;
+  for (std::uint32_t r = 0; r < scene_.robots.size(); ++r) {
+    const RobotBase& base = scene_.robots[r].base;
+    if (base.kind == RobotBase::Kind::kObject && !moving_objects_.empty()) moves_[r] = 1;
+    if (base.kind == RobotBase::Kind::kLink && moves_[base.robot] != 0) moves_[r] = 1;
+  }
+}
+
 void Posture::place_bases() noexcept {
   for (std::size_t r = 0; r < bases_.size(); ++r) {
     const RobotBase& base = scene_.robots[r].base;
@@ -323,7 +337,8 @@ void Posture::place(const Stretch& stretch, double at) noexcept {
   trajectory_.place(stretch, at, variables_, bounds_);
   if (!free_.empty()) place_free_objects(stretch, at);
   if (!moving_objects_.empty()) place_carriers();
-  kinematics_.place(variables_, bases_);
+  kinematics_.place(variables_, bases_, is_placed_ ? moves_ : std::span<const std::uint8_t>());
+  is_placed_ = true;
   chains_.place(kinematics_, bases_);
   if (any_free_) note_freedom(stretch, at);
   ++instant_;

@@ -116,6 +116,7 @@ class Posture {
                                                      const Pose& pose, double age);
   void place_resting(std::uint32_t object) noexcept;
   void place_bases() noexcept;
+  void note_moving() noexcept;
   void place_link_part(std::uint32_t index) noexcept;
   void place_free_objects(const Stretch& stretch, double at) noexcept;
   void place_carriers() noexcept;
@@ -133,6 +134,8 @@ class Posture {
   std::vector<TrackedVariable> variables_;
   std::vector<VariableBounds> bounds_;
   ForwardKinematics kinematics_;
+  std::vector<std::uint8_t> moves_;  // by robot
+  bool is_placed_ = false;           // all robots are, in this question
   std::vector<LinkState> bases_;
   std::vector<std::uint32_t> robot_of_object_, link_of_object_;  // kNoLink: not a link
   std::vector<std::uint32_t> free_;               // objects that are neither fixed nor links

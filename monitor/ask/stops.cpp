@@ -16,11 +16,13 @@ namespace {
 constexpr double kDuration = 1e-6;
 // Waypoints while joints brake by themselves.
 constexpr std::size_t kBraking = 4;
-constexpr double kTolerance = 1e-3;  // m
+constexpr double kTolerance = 4e-3;  // m
 constexpr double kRounding = 1e-9;   // m: of the places of joints on their way
 // Pairs that stay certainly farther than their margin by this are not examined more closely, m.
 constexpr double kFarBeyondMargin = 0.1;
-constexpr int kHalvings = 4;  // of a share of the speed
+constexpr double kShare = 1e-3;           // of the way to the stop: where it is not clear any more
+constexpr std::uint32_t kMostWork = 400;  // queries and placements of a robot in a tick
+constexpr std::uint32_t kHalvings = 4;              // of a share of the speed
 
 // What has been decided so far, where joints brake by themselves: at a time since the brakes act, a
 // joint that stops in `time` after `distance` has gone at least `least` and at most `most` of it.
@@ -110,7 +112,7 @@ void Stops::add_joints(StoppingRobot& robot) const {
   motion.positions.resize(rows * robot.joints.size());
   motion.deviations.resize(robot.joints.size());
   robot.question.tolerance = kTolerance;
-  robot.question.work_limit = scene_.budget;
+  robot.question.instant = kShare;
   robot.question.contacts.emplace();  // a contact in force has no margin here
 }
 
@@ -398,6 +400,7 @@ void Stops::write(const Inputs& inputs, StoppingRobot& robot, Report& report,
                   RobotStop& out) noexcept {
   Question& question = robot.question;
   question.only_margins = question.only_verdicts = false;
+  question.work_limit = std::min(scene_.budget, kMostWork);
   write_motion(1.0, robot);
   if (search_->ask(question, robot.answer)) return;
   out.validity = robot.is_assumed ? SeparationValidity::kAssumed : SeparationValidity::kMeasured;
@@ -447,7 +450,8 @@ double Stops::largest_scaling(double clear_share, StoppingRobot& robot) noexcept
   }
   Question& question = robot.question;
   question.only_margins = question.only_verdicts = true;
-  for (int i = 0; i < kHalvings; ++i) {
+  question.work_limit = std::min(scene_.budget, kMostWork) / kHalvings;
+  for (std::uint32_t i = 0; i < kHalvings; ++i) {
     const double middle = 0.5 * (least + most);
     write_motion(middle, robot);
     const bool is_free = !search_->ask(question, robot.answer) &&

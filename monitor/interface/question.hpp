@@ -141,6 +141,8 @@ struct Question {
   double tolerance = 1e-3;  // m: `upper` - `lower` at the end
   // m: a margin is undecided if the least distance is nearer to it than this.
   double margin_tolerance = 1e-10;
+  // The first instant below a margin is found to within this share of the duration.
+  double instant = 1e-7;
   // m: a motion that is certainly farther away than this is not examined more closely.
   double far_enough = 1e300;
   // Only the margins are asked for. `lower` and `upper` are then as good as these needed.
