@@ -18,10 +18,10 @@ namespace {
 
 using testing::HasSubstr;
 
-constexpr const char* kHeader =
+constexpr const char* kColumns =
     "joint,load_percent,extension_percent,speed_percent,time_ms,angle_deg\n";
 
-std::vector<StopRow> rows_of(const std::string& csv) {
+std::vector<StopRow> rows_in(const std::string& csv) {
   const auto rows = stop_rows(csv);
   if (const auto* mistake = std::get_if<StopMistake>(&rows)) {
     ADD_FAILURE() << mistake->place << ": " << mistake->text;
@@ -31,14 +31,15 @@ std::vector<StopRow> rows_of(const std::string& csv) {
 }
 
 // LINE: TEXT, or nothing.
-std::string mistake_of(const std::string& csv) {
+std::string mistake_in(const std::string& csv) {
   const auto rows = stop_rows(csv);
   const auto* mistake = std::get_if<StopMistake>(&rows);
   return mistake == nullptr ? "" : fmt::format("{}: {}", mistake->place, mistake->text);
 }
 
 TEST(StopTable, HasARowForEachLineInSiUnits) {
-  const auto rows = rows_of(std::string(kHeader) + "1,33,66,100,364,9.00\n\nelbow,0,100,33,1,90\n");
+  const auto rows =
+      rows_in(std::string(kColumns) + "1,33,66,100,364,9.00\n\nelbow,0,100,33,1,90\n");
   ASSERT_EQ(rows.size(), 2u);
   EXPECT_EQ(rows[0].joint, "1");
   EXPECT_EQ(rows[0].category, -1);
@@ -55,7 +56,7 @@ TEST(StopTable, HasARowForEachLineInSiUnits) {
 }
 
 TEST(StopTable, WithoutLoadAndExtensionIsOfTheLargest) {
-  const auto rows = rows_of("speed_percent,joint,distance_mm,time_ms,category\n50,rail,80,400,2\n");
+  const auto rows = rows_in("speed_percent,joint,distance_mm,time_ms,category\n50,rail,80,400,2\n");
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_EQ(rows[0].load, 1.0);
   EXPECT_EQ(rows[0].extension, 1.0);
@@ -65,7 +66,7 @@ TEST(StopTable, WithoutLoadAndExtensionIsOfTheLargest) {
 }
 
 TEST(StopTable, MayBeASpreadsheetsWithQuotesAndAByteOrderMark) {
-  const auto rows = rows_of(
+  const auto rows = rows_in(
       "\xEF\xBB\xBF\"joint\", \"speed_percent\",\"time_ms\",\"angle_deg\"\r\n\"2\",33,364,9\r\n");
   ASSERT_EQ(rows.size(), 1u);
   EXPECT_EQ(rows[0].joint, "2");
@@ -74,7 +75,7 @@ TEST(StopTable, MayBeASpreadsheetsWithQuotesAndAByteOrderMark) {
 // Cells in other units are not in the range of their column.
 TEST(StopTable, IsRefusedWithTheLineTheJointAndTheValue) {
   const auto with = [](const std::string& row) {
-    return mistake_of(std::string(kHeader) + "1,33,33,33,364,9\n" + row + "\n");
+    return mistake_in(std::string(kColumns) + "1,33,33,33,364,9\n" + row + "\n");
   };
   EXPECT_THAT(with("2,0.33,33,33,364,9"),
               HasSubstr("3: found load_percent '0.33' of the joint '2'; expected percent of"));
@@ -89,25 +90,25 @@ TEST(StopTable, IsRefusedWithTheLineTheJointAndTheValue) {
   EXPECT_THAT(with("2,33,33,33,364,"), HasSubstr("found no angle and no distance of the joint"));
   EXPECT_THAT(with("2,,33,33,364"), HasSubstr("3: found 5 cells; expected 6"));
   EXPECT_THAT(with(",33,33,33,364,9"), HasSubstr("3: found no joint"));
-  EXPECT_THAT(mistake_of("joint,category,speed_percent,time_ms,angle_deg\n1,1.5,33,364,9\n"),
+  EXPECT_THAT(mistake_in("joint,category,speed_percent,time_ms,angle_deg\n1,1.5,33,364,9\n"),
               HasSubstr("2: found category '1.5' of the joint '1'; expected 0, 1 or 2"));
-  EXPECT_THAT(mistake_of("joint,speed_percent,time_ms,angle_deg,distance_mm\n1,33,364,9,9\n"),
+  EXPECT_THAT(mistake_in("joint,speed_percent,time_ms,angle_deg,distance_mm\n1,33,364,9,9\n"),
               HasSubstr("2: found an angle and a distance of the joint '1'"));
 }
 
 TEST(StopTable, IsRefusedWithAnUnknownOrMissingColumn) {
-  EXPECT_THAT(mistake_of("joint,speed_percent,time_s,angle_deg\n1,33,0.3,9\n"),
+  EXPECT_THAT(mistake_in("joint,speed_percent,time_s,angle_deg\n1,33,0.3,9\n"),
               HasSubstr("1: found the column 'time_s'; expected joint, category"));
-  EXPECT_THAT(mistake_of("joint,time_ms,angle_deg\n1,300,9\n"),
+  EXPECT_THAT(mistake_in("joint,time_ms,angle_deg\n1,300,9\n"),
               HasSubstr("1: found no column 'speed_percent'; expected it"));
-  EXPECT_THAT(mistake_of("joint,joint,speed_percent,time_ms,angle_deg\n"),
+  EXPECT_THAT(mistake_in("joint,joint,speed_percent,time_ms,angle_deg\n"),
               HasSubstr("1: found the column 'joint' again; expected it once"));
-  EXPECT_THAT(mistake_of(""), HasSubstr("found no rows"));
-  EXPECT_THAT(mistake_of(kHeader), HasSubstr("found no rows"));
-  EXPECT_THAT(mistake_of("joint;speed_percent;time_ms\n"), HasSubstr("found the column 'joint;"));
+  EXPECT_THAT(mistake_in(""), HasSubstr("found no rows"));
+  EXPECT_THAT(mistake_in(kColumns), HasSubstr("found no rows"));
+  EXPECT_THAT(mistake_in("joint;speed_percent;time_ms\n"), HasSubstr("found the column 'joint;"));
 }
 
-StopRow row(double load, double extension, double speed, double distance, int category = -1) {
+StopRow stop_at(double load, double extension, double speed, double distance, int category = -1) {
   return {.joint = "1",
           .category = category,
           .load = load,
@@ -127,7 +128,7 @@ std::string gap(const std::vector<StopRow>& rows, const StopConditions& conditio
 TEST(StopSteps, CountTheNextStepAboveAndAllBelow) {
   std::vector<StopRow> rows;
   for (const double load : {0.33, 0.66, 1.0})
-    for (const double extension : {0.33, 1.0}) rows.push_back(row(load, extension, 1.0, 1.0));
+    for (const double extension : {0.33, 1.0}) rows.push_back(stop_at(load, extension, 1.0, 1.0));
   EXPECT_EQ(counted(rows, {}).size(), 6u) << "the worst";
   EXPECT_EQ(counted(rows, {.load = 0.5}).size(), 4u);
   EXPECT_EQ(counted(rows, {.load = 0.66}).size(), 4u);
@@ -141,15 +142,17 @@ TEST(StopSteps, CountTheNextStepAboveAndAllBelow) {
 }
 
 TEST(StopSteps, CountRowsOfTheCategoryOrOfNone) {
-  const std::vector<StopRow> rows = {row(1, 1, 1, 1, 0), row(1, 1, 1, 2, 1), row(1, 1, 1, 3, -1)};
+  const std::vector<StopRow> rows = {stop_at(1, 1, 1, 1, 0), stop_at(1, 1, 1, 2, 1),
+                                     stop_at(1, 1, 1, 3, -1)};
   EXPECT_EQ(counted(rows, {.category = 0}).size(), 2u);
   EXPECT_EQ(counted(rows, {.category = 2}).size(), 1u);
-  EXPECT_TRUE(counted({row(1, 1, 1, 1, 0)}, {.category = 1}).empty());
+  EXPECT_TRUE(counted({stop_at(1, 1, 1, 1, 0)}, {.category = 1}).empty());
 }
 
 // The row that is missing may be the worst.
 TEST(StopSteps, NeedARowForEachCombination) {
-  const std::vector<StopRow> rows = {row(0.5, 0.5, 1, 1), row(0.5, 1, 1, 1), row(1, 0.5, 1, 1)};
+  const std::vector<StopRow> rows = {stop_at(0.5, 0.5, 1, 1), stop_at(0.5, 1, 1, 1),
+                                     stop_at(1, 0.5, 1, 1)};
   EXPECT_THAT(gap(rows), HasSubstr("found no row of the joint '1' at 100 % load, 100 % extension "
                                    "and 100 % speed; expected one for each combination"));
 }
@@ -165,7 +168,7 @@ TEST(StopSteps, NeverLeaveOutARowAtTheStatedLoadAndExtensionOrTheNextAbove) {
     std::vector<StopRow> rows;
     for (const double load : loads)
       for (const double extension : extensions)
-        rows.push_back(row(load, extension, 1.0, random.uniform(0.1, 1.0)));
+        rows.push_back(stop_at(load, extension, 1.0, random.uniform(0.1, 1.0)));
     const double load = random.unit() * std::ranges::max(loads),
                  extension = random.unit() * std::ranges::max(extensions);
     double worst = 0.0;

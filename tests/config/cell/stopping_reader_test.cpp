@@ -19,8 +19,8 @@ namespace {
 using test::mistake_at;
 using testing::HasSubstr;
 
-constexpr double kDegree = std::numbers::pi / 180.0;
-constexpr double kInf = std::numeric_limits<double>::infinity();
+constexpr double kOneDegree = std::numbers::pi / 180.0;
+constexpr double kNoLimit = std::numeric_limits<double>::infinity();
 
 using Stopping = StoppingCells;
 
@@ -41,7 +41,7 @@ TEST_F(Stopping, HasOneTimeForAllJointsThatMove) {
   for (const char* name : {"shoulder", "elbow", "reach", "grip", "finger"}) {
     EXPECT_DOUBLE_EQ(stop(arm, name).time(1.0), 0.3) << name;
     EXPECT_NEAR(stop(arm, name).distance(2.0), 0.6, 1e-12) << name;
-    EXPECT_EQ(stops.max_accelerations[joint(arm, name)], kInf) << name;
+    EXPECT_EQ(stops.max_accelerations[joint(arm, name)], kNoLimit) << name;
   }
   EXPECT_EQ(stop(arm, "bolt").time(1.0), 0.0) << "it is fixed";
 }
@@ -65,10 +65,10 @@ TEST_F(Stopping, OfOneJointReplacesWhatIsSaidOfAll) {
       scene(cell("{reaction_ms: 10, time_ms: 300, joints: {elbow: {deceleration: 573}, reach: "
                  "{deceleration: 2}, shoulder: {points: [[50, 10, 300], [100, 40, 500]]}, grip: "
                  "{time_ms: 50}}}"));
-  EXPECT_NEAR(stop(arm, "elbow").time(1.0), 1.0 / (573 * kDegree), 1e-9);
+  EXPECT_NEAR(stop(arm, "elbow").time(1.0), 1.0 / (573 * kOneDegree), 1e-9);
   EXPECT_NEAR(stop(arm, "reach").distance(0.5), 0.0625, 1e-9);
-  EXPECT_NEAR(stop(arm, "shoulder").distance(1.5), 10 * kDegree, 1e-12) << "half of 3 rad/s";
-  EXPECT_NEAR(stop(arm, "shoulder").distance(3.0), 40 * kDegree, 1e-12);
+  EXPECT_NEAR(stop(arm, "shoulder").distance(1.5), 10 * kOneDegree, 1e-12) << "half of 3 rad/s";
+  EXPECT_NEAR(stop(arm, "shoulder").distance(3.0), 40 * kOneDegree, 1e-12);
   EXPECT_NEAR(stop(arm, "shoulder").time(3.0), 0.5, 1e-12);
   EXPECT_NEAR(stop(arm, "finger").time(0.1), 0.05, 1e-12) << "it mimics the grip";
 }
@@ -147,8 +147,8 @@ TEST_F(Stopping, StatesHowFastJointsGainSpeed) {
       scene(cell("{reaction_ms: 10, time_ms: 300, joints: {elbow: {acceleration: 573}, reach: "
                  "{acceleration: 4, time_ms: 100}, grip: {acceleration: 1}}}"));
   const std::vector<double>& found = arm.robots[0].stopping.max_accelerations;
-  EXPECT_EQ(found[joint(arm, "shoulder")], kInf);
-  EXPECT_NEAR(found[joint(arm, "elbow")], 573 * kDegree, 1e-12);
+  EXPECT_EQ(found[joint(arm, "shoulder")], kNoLimit);
+  EXPECT_NEAR(found[joint(arm, "elbow")], 573 * kOneDegree, 1e-12);
   EXPECT_EQ(found[joint(arm, "reach")], 4.0);
   EXPECT_EQ(found[joint(arm, "finger")], 1.0) << "the grip's, in its unit";
   EXPECT_NEAR(stop(arm, "elbow").time(1.0), 0.3, 1e-12);
@@ -163,7 +163,7 @@ TEST_F(Stopping, OfAllJointsHasOneRateOnlyIfTheyAreOfOneKind) {
   const Scene mixed =
       scene(cell("{reaction_ms: 10, deceleration: 200, joints: {reach: {deceleration: 2}, grip: "
                  "{time_ms: 50}}}"));
-  EXPECT_NEAR(stop(mixed, "elbow").time(1.0), 1.0 / (200 * kDegree), 1e-9) << "of all others";
+  EXPECT_NEAR(stop(mixed, "elbow").time(1.0), 1.0 / (200 * kOneDegree), 1e-9) << "of all others";
   EXPECT_NEAR(stop(mixed, "reach").time(0.5), 0.25, 1e-12);
   std::string urdf = kArmUrdf;
   for (std::size_t at = 0; (at = urdf.find("prismatic", at)) != std::string::npos;)
@@ -173,10 +173,10 @@ TEST_F(Stopping, OfAllJointsHasOneRateOnlyIfTheyAreOfOneKind) {
       cell("{reaction_ms: 10, deceleration: 100, acceleration: 200, joints: {elbow: {deceleration: "
            "200}, reach: {acceleration: 90}}}"));
   const std::vector<double>& found = arm.robots[0].stopping.max_accelerations;
-  EXPECT_NEAR(stop(arm, "shoulder").time(1.0), 1.0 / (100 * kDegree), 1e-9);
-  EXPECT_NEAR(stop(arm, "elbow").time(1.0), 1.0 / (200 * kDegree), 1e-9);
-  EXPECT_NEAR(found[joint(arm, "elbow")], 200 * kDegree, 1e-12);
-  EXPECT_NEAR(found[joint(arm, "reach")], 90 * kDegree, 1e-12);
+  EXPECT_NEAR(stop(arm, "shoulder").time(1.0), 1.0 / (100 * kOneDegree), 1e-9);
+  EXPECT_NEAR(stop(arm, "elbow").time(1.0), 1.0 / (200 * kOneDegree), 1e-9);
+  EXPECT_NEAR(found[joint(arm, "elbow")], 200 * kOneDegree, 1e-12);
+  EXPECT_NEAR(found[joint(arm, "reach")], 90 * kOneDegree, 1e-12);
 }
 
 TEST_F(Stopping, ByTheUrdfIsWhatItsLimitsStateAndWhereTheyDo) {
@@ -196,38 +196,38 @@ TEST_F(Stopping, ByTheUrdfIsWhatItsLimitsStateAndWhereTheyDo) {
       << "the URDF's limits count only where the cell says so";
 }
 
-const std::string kTable =
+const std::string kStopsCsv =
     "joint,load_percent,extension_percent,speed_percent,time_ms,angle_deg,distance_mm\n"
     "1,50,100,50,300,13,\n1,50,100,100,280,24,\n1,100,100,50,400,17,\n1,100,100,100,390,33,\n"
     "elbow,50,100,100,200,20,\nelbow,100,100,100,250,28,\n"
     "3,100,100,100,300,,75\n";
 
 TEST_F(Stopping, ByATableCountsSharesOfEachJointsFullSpeed) {
-  test::write_text(folder_ / "stops.csv", kTable);
+  test::write_text(folder_ / "stops.csv", kStopsCsv);
   const Scene arm =
       scene(cell("{reaction_ms: 10, table: stops.csv, joints: {grip: {time_ms: 60}}}"));
-  EXPECT_NEAR(stop(arm, "shoulder").distance(1.5), 17 * kDegree, 1e-12);
+  EXPECT_NEAR(stop(arm, "shoulder").distance(1.5), 17 * kOneDegree, 1e-12);
   EXPECT_NEAR(stop(arm, "shoulder").time(3.0), 0.4, 1e-12) << "never below that of half the speed";
-  EXPECT_NEAR(stop(arm, "elbow").distance(4.0), 28 * kDegree, 1e-12);
+  EXPECT_NEAR(stop(arm, "elbow").distance(4.0), 28 * kOneDegree, 1e-12);
   EXPECT_NEAR(stop(arm, "reach").distance(0.5), 0.075, 1e-12);
   EXPECT_NEAR(stop(arm, "grip").time(0.2), 0.06, 1e-12);
   const Scene faster =
       scene(cell("{reaction_ms: 10, table: stops.csv, joints: {grip: {time_ms: 60}}}", "", "",
                  ", joints: {shoulder: {velocity: 2.5}}"));
-  EXPECT_NEAR(stop(faster, "shoulder").distance(2.5), 33 * kDegree, 1e-12)
+  EXPECT_NEAR(stop(faster, "shoulder").distance(2.5), 33 * kOneDegree, 1e-12)
       << "the full speed is the stated one";
 }
 
 TEST_F(Stopping, ByATableHasTheStatedLoadOrTheWorst) {
-  test::write_text(folder_ / "stops.csv", kTable);
+  test::write_text(folder_ / "stops.csv", kStopsCsv);
   const auto with = [&](const std::string& load) {
     return scene(cell("{reaction_ms: 10, table: stops.csv, load: " + load +
                       ", extension: worst, joints: {grip: {time_ms: 60}}}"));
   };
-  EXPECT_NEAR(stop(with("worst"), "shoulder").distance(3.0), 33 * kDegree, 1e-12);
-  EXPECT_NEAR(stop(with("50"), "shoulder").distance(3.0), 24 * kDegree, 1e-12);
+  EXPECT_NEAR(stop(with("worst"), "shoulder").distance(3.0), 33 * kOneDegree, 1e-12);
+  EXPECT_NEAR(stop(with("50"), "shoulder").distance(3.0), 24 * kOneDegree, 1e-12);
   EXPECT_NEAR(stop(with("50"), "reach").distance(0.5), 0.075, 1e-12) << "its next step is 100 %";
-  EXPECT_NEAR(stop(with("51"), "shoulder").distance(3.0), 33 * kDegree, 1e-12);
+  EXPECT_NEAR(stop(with("51"), "shoulder").distance(3.0), 33 * kOneDegree, 1e-12);
   const auto refused = [&](const std::string& load) {
     return errors(cell("{reaction_ms: 10, table: stops.csv, load: " + load +
                        ", joints: {grip: {time_ms: 60}}}"));
@@ -275,7 +275,7 @@ TEST_F(Stopping, ByATableNeedsTheSpeedOfWhichItHasShares) {
 }
 
 TEST_F(Stopping, ByAnInlineTableIsAsByAFile) {
-  test::write_text(folder_ / "stops.csv", kTable);
+  test::write_text(folder_ / "stops.csv", kStopsCsv);
   std::string rows;
   for (const char* row :
        {"joint: 1, load_percent: 50, speed_percent: 50, time_ms: 300, angle_deg: 13",
@@ -319,9 +319,9 @@ TEST_F(Stopping, ByAnInlineTableIsRefusedAtItsRow) {
 TEST_F(Stopping, TheTableIsPartOfTheScenesRevision) {
   const std::string text =
       cell("{reaction_ms: 10, table: stops.csv, joints: {grip: {time_ms: 60}}}");
-  test::write_text(folder_ / "stops.csv", kTable);
+  test::write_text(folder_ / "stops.csv", kStopsCsv);
   const Scene before = scene(text);
-  test::write_text(folder_ / "stops.csv", kTable + "\n");
+  test::write_text(folder_ / "stops.csv", kStopsCsv + "\n");
   EXPECT_NE(scene(text).revision, before.revision);
   const auto cell = read_good(text, folder_ / "cell.yaml");
   EXPECT_THAT(cell.files, testing::Contains((folder_ / "stops.csv").lexically_normal()));
@@ -353,10 +353,10 @@ TEST_F(Stopping, ByRandomTablesIsNeverBelowARowOfTheLoadExtensionAndSpeed) {
       for (int extension = 1; extension <= extensions; ++extension) {
         for (int speed = 1; speed <= speeds; ++speed) {
           const int percent = 100 * speed / speeds, time = random.integer(100, 700);
-          const double unbraked = 0.01 * percent * 3.0 / kDegree * 1e-3 * time;
+          const double unbraked = 0.01 * percent * 3.0 / kOneDegree * 1e-3 * time;
           const double angle = std::round(100 * random.uniform(0.2, 0.6) * unbraked) / 100;
           rows.push_back({100 * (load - 1) / loads, 100 * (extension - 1) / extensions,
-                          0.01 * percent * 3.0, 1e-3 * time, angle * kDegree});
+                          0.01 * percent * 3.0, 1e-3 * time, angle * kOneDegree});
           csv += fmt::format("{},1,{},{},{:.2f},{}\n", percent, 100 * load / loads,
                              100 * extension / extensions, angle, time);
         }
