@@ -52,6 +52,9 @@ struct JointVariable {
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
   double max_speed = std::numeric_limits<double>::infinity();
+  // The limits of URDF 1.2, per s2; infinite: not stated. They count where the cell says so.
+  double urdf_acceleration = std::numeric_limits<double>::infinity();
+  double urdf_deceleration = std::numeric_limits<double>::infinity();
   // The speed above which positions are not plausible, if `max_speed` is not stated. It does not
   // bound the unobserved motion of late inputs.
   double unstated_speed = std::numeric_limits<double>::infinity();

@@ -87,7 +87,9 @@ struct Zone {
   double leave_above = 0.0;                   // m, >= enter_below: hysteresis
   std::vector<std::uint32_t> pairs;           // indices into Scene::pairs
   std::optional<Separation> separation = {};  // between people and a robot; its pairs are published
-  std::optional<double> stop_margin = {};     // m, that a robot keeps until it stands; likewise
+  // The least clearance, m, that its pairs keep until their robots stand; nothing: not stated. At
+  // least one pair then has a link of a robot whose stops are stated.
+  std::optional<double> stop_margin = {};
 };
 
 // All that the tick reads. Indices are valid, names unique, pairs sorted by (first, second), and

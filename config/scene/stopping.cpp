@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <utility>
 
 namespace clearance {
 namespace {
@@ -12,14 +11,19 @@ constexpr double kRoundedUp = 1.0 + 0x1p-48;
 
 }  // namespace
 
+// Rows of several loads have one speed: the worst of them is its point.
 JointStop JointStop::by_table(std::vector<StopPoint> points) {
   std::ranges::sort(points, {}, &StopPoint::speed);
-  for (std::size_t i = 1; i < points.size(); ++i) {
-    points[i].distance = std::max(points[i].distance, points[i - 1].distance);
-    points[i].time = std::max(points[i].time, points[i - 1].time);
-  }
   JointStop stop;
-  stop.points_ = std::move(points);
+  StopPoint worst;
+  for (const StopPoint& point : points) {
+    worst = {point.speed, std::max(worst.distance, point.distance),
+             std::max(worst.time, point.time)};
+    if (stop.points_.empty() || stop.points_.back().speed < point.speed)
+      stop.points_.push_back(worst);
+    else
+      stop.points_.back() = worst;
+  }
   return stop;
 }
 

@@ -22,7 +22,7 @@ constexpr double kRounding = 1e-9;   // m: of the places of joints on their way
 constexpr double kFarBeyondMargin = 0.1;
 constexpr double kShare = 1e-3;           // of the way to the stop: where it is not clear any more
 constexpr std::uint32_t kMostWork = 400;  // queries and placements of a robot in a tick
-constexpr std::uint32_t kHalvings = 4;              // of a share of the speed
+constexpr std::uint32_t kHalvings = 4;    // of a share of the speed
 
 // What has been decided so far, where joints brake by themselves: at a time since the brakes act, a
 // joint that stops in `time` after `distance` has gone at least `least` and at most `most` of it.
@@ -99,7 +99,8 @@ void Stops::add_joints(StoppingRobot& robot) const {
     Joint added{.variable = joint.variable,
                 .stop = &robot.stops->joints[i],
                 .full_speed = variable.max_speed};
-    if (!robot.stops->accelerations.empty()) added.acceleration = robot.stops->accelerations[i];
+    if (!robot.stops->max_accelerations.empty())
+      added.acceleration = robot.stops->max_accelerations[i];
     if (joint.type == JointType::kPrismatic) {
       added.lower = variable.lower;
       added.upper = variable.upper;
@@ -134,8 +135,11 @@ void Stops::add_pairs(StoppingRobot& robot) const {
   std::vector<double> stated(scene_.pairs.size(), -kInfinity);
   for (const Zone& zone : scene_.zones) {
     if (!zone.stop_margin) continue;
-    for (const std::uint32_t pair : zone.pairs)
-      stated[pair] = std::max(stated[pair], *zone.stop_margin);
+    for (const std::uint32_t pair : zone.pairs) {
+      const ObjectPair& of = scene_.pairs[pair];
+      const double both = scene_.objects[of.first].margin + scene_.objects[of.second].margin;
+      stated[pair] = std::max(stated[pair], rounded_up(*zone.stop_margin + both));
+    }
   }
   robot.margins.assign(scene_.pairs.size(), -kInfinity);
   std::uint32_t published = 0;
@@ -353,9 +357,10 @@ void Stops::write_motion(double scaling, StoppingRobot& robot) const noexcept {
   const double on_line = scaling > 0.0 ? longest_braking(scaling, false, robot) : 0.0;
   const double at_most =
       std::max(on_line, robot.may_turn ? longest_braking(scaling, true, robot) : 0.0);
-  double longest = 0.0;
+  double longest = 0.0;  // s: until all stand
   for (const Joint& joint : robot.joints)
-    longest = std::max(longest, joint.stop->time(rounded_up(scaling * joint.speed)));
+    longest =
+        std::max(longest, joint.stop->time(rounded_up(scaling * (joint.speed + joint.gained))));
   const double step = longest / static_cast<double>(kBraking);
   for (std::size_t j = 0; j < joints; ++j) {
     const Joint& joint = robot.joints[j];
@@ -372,6 +377,7 @@ void Stops::write_motion(double scaling, StoppingRobot& robot) const noexcept {
     } else if (keeps_path) {
       at(1) = joint.position + side * (way + speed * on_line);
       deviation += scaling * joint.gained * at_most + speed * (at_most - on_line);
+      if (joint.gained > 0.0) deviation += 0.5 * joint.acceleration * longest * longest;
     } else {
       const Braking braking = braking_of(*joint.stop, speed);
       for (std::size_t k = 0; k <= kBraking; ++k)

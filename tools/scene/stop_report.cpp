@@ -22,7 +22,8 @@ constexpr int kSteps = 200;  // of a curve
 struct ShownJoint {
   const RobotJoint& joint;
   const JointStop& stop;
-  double most = 0.0;  // speed: the full one, or the last printed one; per second
+  double acceleration = 0.0;  // infinite: not stated
+  double most = 0.0;          // speed: the full one, or the last printed one; per second
   double scale = 1.0;
   const char* unit = "m";
 };
@@ -38,7 +39,7 @@ void each_joint(const Scene& scene, Visit&& visit) {
       const JointStop& stop = robot.stopping.joints[i];
       const auto& points = stop.points();
       const double printed = points.empty() ? 1.0 : points.back().speed;
-      ShownJoint shown{joint, stop,
+      ShownJoint shown{joint, stop, robot.stopping.max_accelerations[i],
                        std::isfinite(variable.max_speed) ? variable.max_speed : printed};
       if (joint.type != JointType::kPrismatic) {
         shown.scale = kDegrees;
@@ -51,9 +52,7 @@ void each_joint(const Scene& scene, Visit&& visit) {
 
 std::vector<double> speeds_of(const ShownJoint& shown) {
   std::vector<double> speeds;
-  for (const StopPoint& point : shown.stop.points()) {
-    if (speeds.empty() || point.speed > speeds.back()) speeds.push_back(point.speed);
-  }
+  for (const StopPoint& point : shown.stop.points()) speeds.push_back(point.speed);
   if (speeds.empty())
     for (const double share : kShares) speeds.push_back(share * shown.most);
   return speeds;
@@ -78,6 +77,9 @@ std::string stop_table(const Scene& scene) {
                           shown.scale * speed, shown.unit, shown.scale * shown.stop.distance(speed),
                           shown.unit, 1e3 * shown.stop.time(speed));
     }
+    if (std::isfinite(shown.acceleration))
+      text += fmt::format("  {:<22} gains at most {:.2f} {} per s each second\n", shown.joint.name,
+                          shown.scale * shown.acceleration, shown.unit);
   });
   return text;
 }

@@ -119,7 +119,7 @@ class StoppingMachine {
     for (std::size_t j = 0; j < robot.joints.size(); ++j) {
       if (!moves(robot, j)) continue;
       const std::uint32_t v = robot.joints[j].variable;
-      const double most = stops.accelerations.empty() ? kInfinity : stops.accelerations[j];
+      const double most = stops.max_accelerations.empty() ? kInfinity : stops.max_accelerations[j];
       const double changed =
           most < kInfinity ? most * reaction * (chance(0.5) ? side() : random_.uniform(-1.0, 1.0))
                            : 0.0;
@@ -179,9 +179,9 @@ RobotStops drawn_stops(const Scene& scene, const Robot& robot, Random& random) {
   const bool may_turn = random.uniform(0.0, 1.0) < 0.4;
   for (const RobotJoint& joint : robot.joints) {
     stops.joints.emplace_back();
-    stops.accelerations.push_back(kInfinity);
+    stops.max_accelerations.push_back(kInfinity);
     if (variables_of(joint.type) != 1) continue;
-    if (may_turn) stops.accelerations.back() = random.uniform(0.0, 3.0);
+    if (may_turn) stops.max_accelerations.back() = random.uniform(0.0, 3.0);
     const double full = scene.variables[joint.variable].max_speed;
     const double kind = random.uniform(0.0, 3.0);
     if (kind < 1.0) {
