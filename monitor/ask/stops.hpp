@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
+#include "monitor/ask/stopping_joints.hpp"
 #include "monitor/bodies/ingest.hpp"
 #include "monitor/interface/question.hpp"
 #include "monitor/interface/report.hpp"
@@ -33,19 +34,6 @@ class Stops {
              Report& report) noexcept;
 
  private:
-  // A joint of a robot that stops.
-  struct Joint {
-    std::uint32_t variable = 0;
-    const JointStop* stop = nullptr;
-    double acceleration = kInfinity;               // until the brakes act, rad/s2 or m/s2
-    double lower = -kInfinity, upper = kInfinity;  // that a sliding joint does not leave, m
-    double full_speed = kInfinity;
-    // In this tick: the position in use, and the velocity that counts.
-    double position = 0.0, velocity = 0.0, speed = 0.0;
-    double gained = 0.0;  // its velocity may change by this until the brakes act
-    double age = 0.0;     // s
-    bool is_known = false, any_direction = false;
-  };
   struct WatchedPair {
     std::uint32_t pair = 0;       // index into Scene::pairs
     std::uint32_t other = 0;      // object that may be late or unknown; Scene::objects
@@ -53,40 +41,29 @@ class Stops {
     double margin = 0.0;          // m; -infinity: the robot's build keeps it nearer
   };
   struct StoppingRobot {
-    std::uint32_t robot = 0;
-    const RobotStops* stops = nullptr;
-    std::vector<Joint> joints;
+    StoppingRobot(const Scene& scene, std::uint32_t of);
+
+    std::uint32_t robot;
+    Question question;
+    Answer answer;
+    StoppingJoints joints;
     std::vector<WatchedPair> pairs;
     std::vector<std::uint32_t> beside;  // robots with a link in one of them, ascending
     std::vector<double> margins;        // by Scene::pairs, in this tick
-    Question question;
-    Answer answer;
-    double age = 0.0;  // s: of the oldest position in use
-    bool is_usable = false, is_assumed = false;
-    bool may_turn = false;  // the velocity of a joint may be another one when the brakes act
   };
   static constexpr std::uint32_t kNone = ~0u;
 
-  void add_joints(StoppingRobot& robot) const;
   void add_pairs(StoppingRobot& robot) const;
   void add_others(StoppingRobot& robot) const;
 
-  void read(const Inputs& inputs, StoppingRobot& robot) const noexcept;
   void state_others(const Inputs& inputs, const CloudPairs* clouds, double time,
                     StoppingRobot& robot) const noexcept;
   [[nodiscard]] bool knows_pairs(const Inputs& inputs, const Contacts& contacts,
                                  StoppingRobot& robot) const noexcept;
-  // Writes the motion that stops from `scaling` times the present speeds.
-  void write_motion(double scaling, StoppingRobot& robot) const noexcept;
-  [[nodiscard]] double reaction_of(const StoppingRobot& robot) const noexcept;
-  [[nodiscard]] double time_of(const StoppingRobot& robot) const noexcept;
-  [[nodiscard]] double longest_braking(double scaling, bool with_gain,
-                                       const StoppingRobot& robot) const noexcept;
   [[nodiscard]] double largest_scaling(double clear_share, StoppingRobot& robot) noexcept;
   void write(const Inputs& inputs, StoppingRobot& robot, Report& report, RobotStop& out) noexcept;
 
   const Scene& scene_;
-  double period_;  // s: until the next report
   std::vector<StoppingRobot> robots_;
   std::vector<std::uint32_t> stopping_of_robot_;  // by Scene::robots; kNone: states none
   std::vector<std::uint32_t> robot_of_object_;    // kNone: no link

@@ -39,7 +39,7 @@ std::string text_of(const Feed& feed, const clearance_msg_RobotStop& stop) {
   if (static_cast<SeparationValidity>(stop.validity) == SeparationValidity::kUnknown)
     return fmt::format("{} stops: not known, scaling 0, {}", name, pair);
   if (stop.scaling < 1.0)
-    return fmt::format("{} stops: scaling {:.2f}, {:.0f} % of its way is clear, {}", name,
+    return fmt::format("{} stops: scaling {:.2f}, {:.0f} % of its motion is clear, {}", name,
                        stop.scaling, 100.0 * stop.share, pair);
   return fmt::format("{} stops: clear by {:.3f} m in {:.2f} s, {}", name, stop.clearance, stop.time,
                      pair);
