@@ -157,6 +157,7 @@ class Posture {
     double most = kInfinity;        // its limits allow no larger deviation
   };
   std::vector<FreeVariable> free_variables_;
+  std::vector<std::uint8_t> is_free_, is_stated_;  // by variable: while note_free() runs
   std::vector<Nearing> freedom_;
   bool any_free_ = false;
   std::vector<std::uint8_t> is_of_question_, may_deviate_;  // by object
