@@ -2,44 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "monitor/bodies/directed_rounding.hpp"
 #include "monitor/inputs/elapsed.hpp"
 
 namespace clearance {
-
-// At a time since the brakes act, it has come at least `least` and at most `most` far.
-struct StoppingJoints::Braking {
-  double distance = 0.0, time = 0.0, speed = 0.0;
-
-  [[nodiscard]] double least(double t) const noexcept {
-    return time > 0.0 ? distance * std::min(1.0, t / time) : distance;
-  }
-  [[nodiscard]] double most(double t) const noexcept { return std::min(distance, speed * t); }
-  [[nodiscard]] double middle(double t) const noexcept { return 0.5 * (least(t) + most(t)); }
-};
-
-// The joint's speed does not grow while it brakes, so what it has covered is concave in time.
-StoppingJoints::Braking StoppingJoints::braking_of(const JointStop& stop, double speed) noexcept {
-  const double distance = stop.distance(speed), time = stop.time(speed);
-  return {distance, time, time > 0.0 ? std::max(speed, distance / time) : kInfinity};
-}
-
-// No farther is the joint from the straight lines between its middles at these times.
-double StoppingJoints::deviation_of(const Braking& braking, double step) noexcept {
-  double most = 0.0;
-  for (std::size_t k = 0; k < kBraking; ++k) {
-    const double from = static_cast<double>(k) * step, to = from + step;
-    const double at_from = braking.middle(from), at_to = braking.middle(to);
-    // Both bounds are straight between these times.
-    for (const double t : {from, to, braking.time, braking.distance / braking.speed}) {
-      if (!(t >= from && t <= to)) continue;
-      const double line = step > 0.0 ? at_from + (at_to - at_from) * ((t - from) / step) : at_to;
-      most = std::max({most, braking.most(t) - line, line - braking.least(t)});
-    }
-  }
-  return rounded_up(most);
-}
 
 StoppingJoints::StoppingJoints(const Scene& scene, std::uint32_t robot, JointTrajectory& motion)
     : stops_(scene.robots[robot].stopping), robot_(robot), period_(1.0 / scene.rate_hz) {
@@ -59,10 +27,8 @@ StoppingJoints::StoppingJoints(const Scene& scene, std::uint32_t robot, JointTra
     joints_.push_back(added);
     motion.joints.push_back(variable.name);
   }
-  const std::size_t rows = stops_.keeps_path ? 2 : 2 + kBraking;
-  for (std::size_t row = 0; row < rows; ++row)
-    motion.times.push_back(kDuration * static_cast<double>(row) / static_cast<double>(rows - 1));
-  motion.positions.resize(rows * joints_.size());
+  motion.times = {0.0, kDuration};
+  motion.positions.resize(kRows * joints_.size());
   motion.deviations.resize(joints_.size());
 }
 
@@ -90,7 +56,8 @@ void StoppingJoints::read(const Inputs& inputs, Joint& joint) noexcept {
   joint.position = state.position;
   joint.velocity = state.velocity_known ? state.velocity : 0.0;
   joint.speed = state.velocity_known ? std::abs(state.velocity) : joint.full_speed;
-  if (state.velocities_contradict && joint.velocity != 0.0) {
+  if (state.velocities_contradict) {
+    joint.any_direction |= joint.velocity == 0.0 && state.sent_speed > 0.0;
     joint.speed = std::max(joint.speed, state.sent_speed);
     joint.velocity = std::copysign(joint.speed, joint.velocity);
   }
@@ -151,15 +118,16 @@ void StoppingJoints::state(StatedJoint& out, std::uint32_t variable) const noexc
   const bool either = joint.any_direction || joint.gained > 0.0;
   out.position = joint.position;
   if (!either) out.position += std::copysign(0.5 * covered, joint.velocity);
-  out.most = either ? covered : rounded_up(0.5 * covered);
+  const double beyond = joint.hold_within_limits(out.position);
+  out.most = rounded_up((either ? covered : 0.5 * covered) + beyond);
 }
 
 // First the joints go on as they do. Then they brake: in proportion, if the path is kept, so that
-// they stay on a line; else each by itself.
+// they stay on a line; else each by itself, so that they stay in a box that goes on with them.
 void StoppingJoints::write_motion(double scaling, JointTrajectory& motion) const noexcept {
-  const std::size_t rows = motion.times.size(), joints = joints_.size();
+  const std::size_t joints = joints_.size();
   const double on_line = in_proportion(scaling), at_most = at_most_in_proportion(scaling);
-  const double longest = longest_time(scaling), step = longest / static_cast<double>(kBraking);
+  const double longest = longest_time(scaling);
   for (std::size_t j = 0; j < joints; ++j) {
     const Joint& joint = joints_[j];
     const double speed = rounded_up(scaling * joint.speed);
@@ -171,34 +139,30 @@ void StoppingJoints::write_motion(double scaling, JointTrajectory& motion) const
     at(0) = joint.position;
     if (joint.any_direction) {
       deviation += before + (stops_.keeps_path ? faster * at_most : joint.stop->distance(faster));
-      for (std::size_t row = 1; row < rows; ++row) at(row) = joint.position;
+      at(1) = joint.position;
     } else if (stops_.keeps_path) {
       at(1) = joint.position + side * (before + speed * on_line);
       deviation += scaling * joint.gained * at_most + speed * (at_most - on_line);
       if (joint.gained > 0.0) deviation += 0.5 * joint.acceleration * longest * longest;
     } else {
-      const Braking braking = braking_of(*joint.stop, speed);
-      for (std::size_t k = 0; k <= kBraking; ++k)
-        at(1 + k) =
-            joint.position + side * (before + braking.middle(static_cast<double>(k) * step));
-      deviation += deviation_of(braking, step);
-      if (joint.gained > 0.0) {
-        const double back = rounded_up(scaling * std::max(0.0, joint.gained - joint.speed));
-        deviation += std::max(joint.stop->distance(faster) - braking.distance,
-                              braking.distance + joint.stop->distance(back));
-      }
+      const double back = rounded_up(scaling * std::max(0.0, joint.gained - joint.speed));
+      const double on = joint.stop->distance(faster), reverse = joint.stop->distance(back);
+      at(0) += side * 0.5 * (on - reverse);
+      at(1) = at(0) + side * before;
+      deviation += 0.5 * (on + reverse);
     }
-    // What slides stops at its limits at the latest, and there it leaves the lines.
     double beyond = 0.0;
-    for (std::size_t row = 1; row < rows; ++row) {
-      const double within = std::clamp(at(row), std::min(joint.lower, joint.position),
-                                       std::max(joint.upper, joint.position));
-      beyond = std::max(beyond, std::abs(at(row) - within));
-      at(row) = within;
-    }
+    for (std::size_t row = 0; row < kRows; ++row)
+      beyond = std::max(beyond, joint.hold_within_limits(at(row)));
     deviation += beyond;
     motion.deviations[j] = deviation > 0.0 ? rounded_up(deviation) : 0.0;
   }
+}
+
+// What slides stops at its limits at the latest, and there it leaves the lines.
+double StoppingJoints::Joint::hold_within_limits(double& at) const noexcept {
+  const double within = std::clamp(at, std::min(lower, position), std::max(upper, position));
+  return std::abs(std::exchange(at, within) - within);
 }
 
 // As a time at the present speed, s.

@@ -43,8 +43,7 @@ class StoppingJoints {
   [[nodiscard]] double scaling_within(double share) const noexcept;
 
  private:
-  // Waypoints while joints brake by themselves.
-  static constexpr std::size_t kBraking = 4;
+  static constexpr std::size_t kRows = 2;  // waypoints of a motion
   struct Joint {
     std::uint32_t variable = 0;
     const JointStop* stop = nullptr;
@@ -56,12 +55,10 @@ class StoppingJoints {
     double gained = 0.0;  // its velocity may change by this until the brakes act
     double age = 0.0;     // s
     bool any_direction = false;
-  };
-  // How far a joint has come while it brakes by itself.
-  struct Braking;
-  static Braking braking_of(const JointStop& stop, double speed) noexcept;
-  static double deviation_of(const Braking& braking, double step) noexcept;
 
+    // Returns by how much the position was beyond the limits.
+    double hold_within_limits(double& at) const noexcept;
+  };
   [[nodiscard]] const Joint* find(std::uint32_t variable) const noexcept;
   void read(const Inputs& inputs, Joint& joint) noexcept;
   [[nodiscard]] double reaction() const noexcept;

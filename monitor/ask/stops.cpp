@@ -41,6 +41,7 @@ Stops::Stops(const Scene& scene) : scene_(scene), stopping_of_robot_(scene.robot
   for (StoppingRobot& robot : robots_) {
     add_pairs(robot);
     add_others(robot);
+    make_room(robot);
   }
 }
 Stops::~Stops() = default;
@@ -112,6 +113,26 @@ void Stops::add_others(StoppingRobot& robot) const {
       robot.question.poses.emplace_back().object = object.name;
     }
   }
+}
+
+// A question of this size, so that those of ticks do not allocate.
+void Stops::make_room(StoppingRobot& robot) {
+  const auto within_limits = [&](const std::string& name) {
+    const auto of = std::ranges::find(scene_.variables, name, &JointVariable::name);
+    return std::max(of->lower, std::min(0.0, of->upper));
+  };
+  Question& question = robot.question;
+  JointTrajectory& motion = question.motion;
+  for (std::size_t i = 0; i < motion.positions.size(); ++i)
+    motion.positions[i] = within_limits(motion.joints[i % motion.joints.size()]);
+  std::ranges::fill(motion.deviations, 1.0);
+  for (StatedJoint& stated : question.joints) {
+    stated.position = within_limits(stated.name);
+    stated.most = 1.0;
+  }
+  for (SeenFrame& frame : question.seen) frame.is_known = false;
+  question.work_limit = 1;
+  (void)search_->ask(question, robot.answer);
 }
 
 void Stops::prepare(Report& report) const {

@@ -55,6 +55,7 @@ class Stops {
 
   void add_pairs(StoppingRobot& robot) const;
   void add_others(StoppingRobot& robot) const;
+  void make_room(StoppingRobot& robot);
 
   void state_others(const Inputs& inputs, const CloudPairs* clouds, double time,
                     StoppingRobot& robot) const noexcept;

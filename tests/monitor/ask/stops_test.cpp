@@ -4,20 +4,16 @@
 
 #include <algorithm>
 #include <cmath>
-#include <fstream>
-#include <iterator>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "monitor/pairs/kept_near.hpp"
 #include "monitor/tick/monitor.hpp"
-#include "tests/config/cells.hpp"
-#include "tests/monitor/tick/fresh_distance.hpp"
+#include "tests/monitor/ask/arms_that_stop.hpp"
 #include "tests/monitor/tick/scara_cell.hpp"
 #include "tests/monitor/tick/small_cells.hpp"
 #include "tests/monitor/tick/true_bodies.hpp"
-#include "tests/shared/places.hpp"
 #include "tests/shared/random.hpp"
 #include "tests/shared/repeats.hpp"
 
@@ -26,34 +22,8 @@ namespace {
 
 using test::kStart;
 using test::kTick;
-using test::ScratchFolder;
-using test::write_text;
 
 constexpr double kOracle = 2e-9;  // m: what the oracle rounds
-constexpr double kPersonSpeed = 1.6;
-
-std::string text_in(const std::string& file) {
-  std::ifstream in(file);
-  return {std::istreambuf_iterator<char>(in), {}};
-}
-
-// The shipped cell of two arms, which state how they stop, and a person beside them.
-Scene arms_that_stop(const std::string& left, const std::string& right,
-                     const std::string& zones = "") {
-  const std::string file = test::places::sources() + "/config/cells/seven_joint_arms.yaml";
-  std::string text = text_in(file);
-  const auto after = [&](const std::string& mark, const std::string& more) {
-    text.insert(text.find(mark) + mark.size(), more);
-  };
-  after("prefix: left_\n", "    stopping: " + left + "\n");
-  after("prefix: right_\n", "    stopping: " + right + "\n");
-  after("objects:\n",
-        "  - {name: person, max_speed: 1.6, may_jump: true, capsule: {radius: 0.2, from: [0, 0, "
-        "-0.6], to: [0, 0, 0.6]}}\n");
-  after("pairs:\n", "  - between: [left, person]\n  - between: [right, person]\n");
-  after("zones:\n", zones);
-  return scene_of(text, file);
-}
 
 // The present speeds of a machine, and how it stops. Every part of a stop is drawn.
 class StoppingMachine {
@@ -101,7 +71,7 @@ class StoppingMachine {
       if (&each == &robot) elapsed = time;
     }
     std::vector<Pose> sent = sent_;
-    for (Pose& pose : sent) pose.position += kPersonSpeed * elapsed * random_.direction();
+    for (Pose& pose : sent) pose.position += test::kPersonSpeed * elapsed * random_.direction();
     return test::true_poses(scene_, at, sent, exact_);
   }
 
@@ -117,7 +87,7 @@ class StoppingMachine {
     std::vector<double> speeds(robot.joints.size(), 0.0);  // from which they brake
     double in_proportion = 0.0, longest = 0.0;
     for (std::size_t j = 0; j < robot.joints.size(); ++j) {
-      if (!moves(robot, j)) continue;
+      if (!test::moves(scene_, robot, j)) continue;
       const std::uint32_t v = robot.joints[j].variable;
       const double most = stops.max_accelerations.empty() ? kInfinity : stops.max_accelerations[j];
       const double changed =
@@ -131,7 +101,7 @@ class StoppingMachine {
       longest = std::max(longest, stops.joints[j].time(speed));
     }
     for (std::size_t j = 0; j < robot.joints.size(); ++j) {
-      if (!moves(robot, j)) continue;
+      if (!test::moves(scene_, robot, j)) continue;
       const std::uint32_t v = robot.joints[j].variable;
       if (is_braking && stops.keeps_path) {
         at[v] += speeds[j] * share * in_proportion;
@@ -146,13 +116,11 @@ class StoppingMachine {
     }
     return reaction - age_ + (is_braking ? share * longest : 0.0);
   }
-  [[nodiscard]] bool moves(const Robot& robot, std::size_t j) const {
-    const RobotJoint& joint = robot.joints[j];
-    return variables_of(joint.type) == 1 && scene_.variables[joint.variable].name == joint.name;
-  }
-  // How far a joint has come while its speed falls, by some law that fits its table.
+  // How far a joint has come while its speed falls, by some law that fits its table: it needs no
+  // more than the table says, and often less.
   double went(const JointStop& stop, double speed, double t) {
-    const double distance = stop.distance(speed), time = stop.time(speed);
+    const double distance = (chance(0.5) ? 1.0 : random_.unit()) * stop.distance(speed);
+    const double time = stop.time(speed);
     if (!(distance > 0.0)) return 0.0;
     const double steepest = std::max(1.0, speed * time / distance);
     const double power = random_.uniform(1.0, steepest);
@@ -171,50 +139,6 @@ class StoppingMachine {
   std::int64_t now_ = kStart;
 };
 
-// Random stops of a robot: tables, decelerations and times.
-RobotStops drawn_stops(const Scene& scene, const Robot& robot, Random& random) {
-  RobotStops stops;
-  stops.reaction = random.uniform(0.0, 0.1);
-  stops.keeps_path = random.uniform(0.0, 1.0) < 0.5;
-  const bool may_turn = random.uniform(0.0, 1.0) < 0.4;
-  for (const RobotJoint& joint : robot.joints) {
-    stops.joints.emplace_back();
-    stops.max_accelerations.push_back(kInfinity);
-    if (variables_of(joint.type) != 1) continue;
-    if (may_turn) stops.max_accelerations.back() = random.uniform(0.0, 3.0);
-    const double full = scene.variables[joint.variable].max_speed;
-    const double kind = random.uniform(0.0, 3.0);
-    if (kind < 1.0) {
-      stops.joints.back() = JointStop::by_deceleration(random.uniform(1.0, 20.0) * full);
-    } else if (kind < 2.0) {
-      stops.joints.back() = JointStop::by_time(random.uniform(0.01, 0.3));
-    } else {
-      std::vector<StopPoint> points;
-      for (const double share : {0.33, 0.66, 1.0}) {
-        const double time = random.uniform(0.05, 0.4);
-        points.push_back({share * full, share * full * time * random.uniform(0.2, 1.0), time});
-      }
-      stops.joints.back() = JointStop::by_table(points);
-    }
-  }
-  return stops;
-}
-
-const std::string kSomeStops = "{reaction_ms: 50, path: kept, time_ms: 200}";
-constexpr double kMargin = 0.07;  // m, of the zone between both arms
-
-Scene drawn_scene(std::uint64_t seed) {
-  Scene scene = arms_that_stop(kSomeStops, kSomeStops);
-  Random random(seed);
-  for (Robot& robot : scene.robots) robot.stopping = drawn_stops(scene, robot, random);
-  scene.zones.front().stop_margin = kMargin;
-  return scene;
-}
-
-bool is_link(const Robot& robot, std::uint32_t object) {
-  return std::ranges::find(robot.links, object, &RobotLink::object) != robot.links.end();
-}
-
 struct Compared {
   std::size_t bounds = 0, outside = 0;
   double worst = kInfinity;
@@ -227,13 +151,6 @@ void count(const Scene& scene, std::uint32_t pair, double truth, double least, C
   const ObjectPair& of = scene.pairs[pair];
   compared.worst = truth - least;
   compared.pair = scene.objects[of.first].name + " - " + scene.objects[of.second].name;
-}
-
-double distance_of(const Scene& scene, std::uint32_t pair, const std::vector<Pose>& poses) {
-  const ObjectPair& of = scene.pairs[pair];
-  return test::fresh_distance(scene.objects[of.first], poses[of.first], scene.objects[of.second],
-                              poses[of.second])
-      .upper;
 }
 
 // Calls use(report, robot, poses) for instants of stops.
@@ -254,14 +171,15 @@ void for_each_instant(const Scene& scene, std::uint64_t seed, bool scaled, const
 
 TEST(StopsOfRobots, AreNeverNearerThanTheBoundUntilTheyStand) {
   for (std::uint64_t seed = 1; seed <= repeats(80); ++seed) {
-    const Scene scene = drawn_scene(seed);
+    const Scene scene = test::drawn_scene(seed);
     Compared compared;
     for_each_instant(
         scene, seed, false, [&](const Report& report, const Robot& robot, const auto& poses) {
           for (const PairReport& pair : report.pairs) {
             const ObjectPair& of = scene.pairs[pair.pair];
-            if (pair.stop_lower > 0.0 && (is_link(robot, of.first) || is_link(robot, of.second)))
-              count(scene, pair.pair, distance_of(scene, pair.pair, poses), pair.stop_lower,
+            if (pair.stop_lower > 0.0 && (test::is_moved_link(scene, robot, of.first) ||
+                                          test::is_moved_link(scene, robot, of.second)))
+              count(scene, pair.pair, test::distance_of(scene, pair.pair, poses), pair.stop_lower,
                     compared);
           }
         });
@@ -274,7 +192,7 @@ TEST(StopsOfRobots, AreNeverNearerThanTheBoundUntilTheyStand) {
 TEST(StopsOfRobots, FromTheStatedShareOfTheSpeedKeepTheMargins) {
   std::size_t slowed = 0;
   for (std::uint64_t seed = 1; seed <= repeats(80); ++seed) {
-    const Scene scene = drawn_scene(seed);
+    const Scene scene = test::drawn_scene(seed);
     const std::vector<std::uint32_t> near = kept_nearer(scene, 0.0);
     const auto& between = scene.zones.front().pairs;
     Compared compared;
@@ -284,11 +202,13 @@ TEST(StopsOfRobots, FromTheStatedShareOfTheSpeedKeepTheMargins) {
               report.stops[static_cast<std::size_t>(&robot - scene.robots.data())].scaling < 1.0;
           for (const PairReport& pair : report.pairs) {
             const ObjectPair& of = scene.pairs[pair.pair];
-            if (!(is_link(robot, of.first) || is_link(robot, of.second))) continue;
+            if (!(test::is_moved_link(scene, robot, of.first) ||
+                  test::is_moved_link(scene, robot, of.second)))
+              continue;
             if (std::ranges::binary_search(near, pair.pair)) continue;
             const bool has_margin = std::ranges::find(between, pair.pair) != between.end();
-            count(scene, pair.pair, distance_of(scene, pair.pair, poses),
-                  has_margin ? kMargin : 0.0, compared);
+            count(scene, pair.pair, test::distance_of(scene, pair.pair, poses),
+                  has_margin ? test::kMargin : 0.0, compared);
           }
         });
     EXPECT_EQ(compared.outside, 0u)
