@@ -29,6 +29,7 @@ Examples:
   clearance-scene warehouse 1000 -o warehouse.yaml
   clearance-scene report warehouse.yaml
   clearance-scene errors cell.yaml --joint left_elbow=1.2
+  clearance-scene stops cell.yaml --plot stops.svg
   clearance-scene send --change 'attach: {object: part, to: left_hand}')";
 
 std::vector<Option> robot_options(RobotCellOptions& robot, const char* srdf) {
@@ -132,22 +133,34 @@ CommandLine errors_line(ErrorsArguments& arguments) {
       }};
 }
 
+CommandLine stops_line(StopsArguments& arguments) {
+  return {.about =
+              "Print how far and how long each joint goes on once its robot is to stop, by what "
+              "the cell states",
+          .name = "stops",
+          .options = {{"CELL", &arguments.cell, "The cell file (YAML)", required()},
+                      {"--plot", &arguments.plot, "SVG of distances over speeds, by gnuplot"}}};
+}
+
 int run(int argc, char** argv) {
   ImportArguments import;
   AllowArguments allow;
   WarehouseArguments warehouse;
   ErrorsArguments errors;
+  StopsArguments stops;
   ReportArguments report;
   SendArguments send;
   CommandLine line{"Writes cell files, reports the models of objects, and changes running scenes.",
                    kFooter};
   line.subcommands = {import_line(import), allow_line(allow),   warehouse_line(warehouse),
-                      report_line(report), errors_line(errors), send_line(send)};
+                      report_line(report), errors_line(errors), stops_line(stops),
+                      send_line(send)};
   if (const auto done = parse(line, argc, argv)) return *done;
   if (line.chosen == "import") return import_robot(std::move(import));
   if (line.chosen == "allow") return allow_collisions(allow);
   if (line.chosen == "warehouse") return make_warehouse(warehouse);
   if (line.chosen == "errors") return report_errors(errors);
+  if (line.chosen == "stops") return report_stops(stops);
   if (line.chosen == "report") return report_models(report);
   return send_changes(send);
 }

@@ -27,6 +27,7 @@
 #include "config/cell/shape_reader.hpp"
 #include "config/cell/share_reader.hpp"
 #include "config/cell/simulation_reader.hpp"
+#include "config/cell/stop_demands.hpp"
 #include "config/cell/zone_reader.hpp"
 #include "config/scene/refresh_share.hpp"
 #include "config/scene/revision.hpp"
@@ -74,6 +75,11 @@ class CellReader {
   std::optional<Units> read_units(const YamlNode& node);
   void read_timing(MapReader& map, const Quantities& quantities, Scene& scene);
   void read_objects_and_pairs(MapReader& map, const Quantities& quantities, Cell& cell);
+  void refuse_unknown_stops(const YamlNode* zones_node, const RobotList& robots,
+                            const ObjectList& list, const PairList& pairs,
+                            const std::vector<Zone>& zones);
+  void publish_open(RobotList& robots, const ObjectList& list, PairList& pairs,
+                    const std::vector<Zone>& zones);
   void refuse_frames_without_a_world(const YamlNode& root, const Cell& cell);
   void select_share(const YamlNode& root, Cell& cell);
   // This comes last: it needs every pair with its parts.
@@ -130,6 +136,24 @@ void CellReader::read_timing(MapReader& map, const Quantities& quantities, Scene
   if (const YamlNode* gradients = map.optional("gradients")) {
     scene.gradients = read_flag(*gradients, diagnostics_).value_or(false);
   }
+}
+
+void CellReader::refuse_unknown_stops(const YamlNode* zones_node, const RobotList& robots,
+                                      const ObjectList& list, const PairList& pairs,
+                                      const std::vector<Zone>& zones) {
+  if (!diagnostics_.empty()) return;
+  const StoppingRobots stopping(robots.robots, list.objects);
+  refuse_unbounded_motion(stopping, robots, list, diagnostics_);
+  if (zones_node != nullptr)
+    refuse_zones_without_stops(*zones_node, stopping, zones, pairs.pairs, diagnostics_);
+}
+
+void CellReader::publish_open(RobotList& robots, const ObjectList& list, PairList& pairs,
+                              const std::vector<Zone>& zones) {
+  if (!diagnostics_.empty()) return;
+  const std::string note =
+      publish_open_pairs({list.objects, robots.robots, robots.variables}, zones, pairs);
+  if (!note.empty() && !robots.robots.empty()) robots.robots.front().notes.push_back(note);
 }
 
 // Reads objects and robots, then pairs, then zones. Each list names entries of the one before, and
@@ -193,11 +217,8 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
     cell.scene.contacts =
         read_contacts(*contacts_node, list, cell.scene.zones, group_index, quantities, pairs);
   }
-  if (diagnostics_.empty()) {
-    const std::string note = publish_open_pairs({list.objects, robots.robots, robots.variables},
-                                                cell.scene.zones, pairs);
-    if (!note.empty() && !robots.robots.empty()) robots.robots.front().notes.push_back(note);
-  }
+  refuse_unknown_stops(zones_node, robots, list, pairs, cell.scene.zones);
+  publish_open(robots, list, pairs, cell.scene.zones);
   const bool is_complete = pairs.complete && list.names_known;
   if (shares_ != nullptr && is_complete) {
     cell.shares.all = read_shares(*shares_, list.objects, pairs.pairs, cell.scene.zones,

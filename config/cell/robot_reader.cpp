@@ -15,6 +15,7 @@
 #include "config/cell/link_parts.hpp"
 #include "config/cell/robot_description.hpp"
 #include "config/cell/ros_reader.hpp"
+#include "config/cell/stopping_reader.hpp"
 #include "config/scene/chain_rounding.hpp"
 #include "config/scene/plausible_joints.hpp"
 #include "config/urdf/robot_exceptions.hpp"
@@ -30,6 +31,7 @@ struct RobotKeys {
   const YamlNode* srdf_node = nullptr;
   const YamlNode* base_node = nullptr;
   const YamlNode* joints_node = nullptr;
+  const YamlNode* stopping_node = nullptr;
   std::vector<const YamlNode*> visual_as_collision;  // names of links
   std::string name, prefix, joint_states;
   RosStamps stamps = RosStamps::kMessage;
@@ -133,6 +135,7 @@ RobotKeys RobotReader::read_keys(const YamlNode& node) {
   keys.srdf_node = map.optional("srdf");
   keys.base_node = map.optional("base");
   keys.joints_node = map.optional("joints");
+  keys.stopping_node = map.optional("stopping");
   read_joint_topic(map, keys);
   if (keys.name_node != nullptr) {
     keys.name = read_name(*keys.name_node, "a robot's name", diagnostics_).value_or("");
@@ -308,6 +311,8 @@ bool RobotReader::read(const YamlNode& node, RobotList& list) {
   list.variables.insert(list.variables.end(), variables.begin(), variables.end());
   for (RobotJoint& joint : robot.joints) joint.variable += first;
   set_plausible_motion(robot, list.variables);
+  if (keys.stopping_node != nullptr)
+    read_stopping(*keys.stopping_node, file_, quantities_, revision_, list.variables, robot);
   add_links(keys, *description, robot);
   allow(keys, *description, robot, list.may_touch);
   list.robots.push_back(std::move(robot));

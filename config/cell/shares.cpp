@@ -93,7 +93,9 @@ void select_share(Cell& cell, std::uint32_t share) {
   }
   for (Zone& zone : scene.zones) {
     keep(now, zone.pairs);
-    if (zone.pairs.empty()) zone.separation.reset();
+    if (!zone.pairs.empty()) continue;
+    zone.separation.reset();
+    zone.stop_margin.reset();
   }
   for (AllowedContact& contact : scene.contacts) keep(now, contact.pairs);
   Needs(scene, share == 0 && cell.ros.moveit.any()).mark();

@@ -47,7 +47,7 @@ struct Shares {
 
 // Reduces a whole cell to one of its shares:
 //  - the pairs of the scene, its zones and its contacts are those of the share; a zone without a
-//    pair stays, without separation, so that ids stay the same;
+//    pair stays, without separation and stops, so that ids stay the same;
 //  - objects and joints on which no pair depends are not read (Object::is_read), but for the first
 //    share of a cell that takes MoveIt's messages: these may ask for any place;
 //  - all topics except inputs are the share's own (topics_of_share);

@@ -63,7 +63,9 @@ class ZoneReader {
     MapReader map(node, "a zone", diagnostics);
     if (const YamlNode* name = map.required("name")) read_zone_name(*name, zone);
     const auto between = group_index_.read_between(map);
-    read_thresholds(map, zone);
+    const YamlNode* stops = map.optional("stops");
+    if (stops != nullptr) zone.stop_margin = read_stop_margin(*stops);
+    read_thresholds(map, stops != nullptr, zone);
     const YamlNode* separation = map.optional("separation");
     map.refuse_unknown_keys();
     if (between) {
@@ -90,10 +92,30 @@ class ZoneReader {
     }
   }
 
-  // The difference of the two thresholds is the hysteresis, so it must not be negative.
-  void read_thresholds(MapReader& map, Zone& zone) const {
-    const YamlNode* enter_node = map.required("enter_below");
-    const YamlNode* leave_node = map.required("leave_above");
+  [[nodiscard]] std::optional<double> read_stop_margin(const YamlNode& node) const {
+    MapReader map(node, "the stops of a zone", quantities_.diagnostics());
+    const YamlNode* margin = map.required("margin");
+    map.refuse_unknown_keys();
+    if (margin == nullptr) return std::nullopt;
+    return quantities_.length(*margin, "the clearance that is kept until the robot stands",
+                              kNotNegative);
+  }
+
+  // The difference of the two thresholds is the hysteresis, so it must not be negative. A zone with
+  // `stops` may have none: only a clearance below 0 then enters it by distance.
+  void read_thresholds(MapReader& map, bool has_stops, Zone& zone) const {
+    const auto threshold = [&](const char* key) {
+      return has_stops ? map.optional(key) : map.required(key);
+    };
+    const YamlNode* enter_node = threshold("enter_below");
+    const YamlNode* leave_node = threshold("leave_above");
+    if (has_stops && (enter_node == nullptr) != (leave_node == nullptr)) {
+      quantities_.diagnostics().add(
+          enter_node != nullptr ? *enter_node : *leave_node,
+          fmt::format("found {}; expected both or none", enter_node != nullptr
+                                                             ? "enter_below without leave_above"
+                                                             : "leave_above without enter_below"));
+    }
     std::optional<double> enter, leave;
     if (enter_node != nullptr) {
       enter = quantities_.length(*enter_node, "the clearance below which the zone is entered",

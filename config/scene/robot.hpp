@@ -10,6 +10,7 @@
 
 #include "config/scene/place_error.hpp"
 #include "config/scene/ros_stamps.hpp"
+#include "config/scene/stopping.hpp"
 #include "core/pose.hpp"
 
 namespace clearance {
@@ -51,6 +52,9 @@ struct JointVariable {
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
   double max_speed = std::numeric_limits<double>::infinity();
+  // The limits of URDF 1.2, per s2; infinite: not stated. They count where the cell says so.
+  double urdf_acceleration = std::numeric_limits<double>::infinity();
+  double urdf_deceleration = std::numeric_limits<double>::infinity();
   // The speed above which positions are not plausible, if `max_speed` is not stated. It does not
   // bound the unobserved motion of late inputs.
   double unstated_speed = std::numeric_limits<double>::infinity();
@@ -133,6 +137,7 @@ struct Robot {
   bool is_attached = false;
   std::vector<RobotLink> links;  // the root first
   std::vector<RobotJoint> joints;
+  RobotStops stopping = {};        // stated
   std::vector<std::string> notes;  // for the log: what was left out, and why
 
   // Tells whether the variable belongs to the base, which follows a frame of tf.

@@ -87,6 +87,9 @@ struct Zone {
   double leave_above = 0.0;                   // m, >= enter_below: hysteresis
   std::vector<std::uint32_t> pairs;           // indices into Scene::pairs
   std::optional<Separation> separation = {};  // between people and a robot; its pairs are published
+  // The least clearance, m, that its pairs keep until their robots stand; nothing: not stated. At
+  // least one pair then has a link of a robot whose stops are stated.
+  std::optional<double> stop_margin = {};
 };
 
 // All that the tick reads. Indices are valid, names unique, pairs sorted by (first, second), and
@@ -117,9 +120,11 @@ struct Scene {
       contacts;  // their pairs are published, and in no zone with `separation`
 };
 
-// Counts the zones with `separation`, and their pairs, each once per zone.
+// Counts the zones with `separation`, their pairs, each once per zone, and the robots that state
+// how they stop: what the message Separation has.
 struct SeparatedCount {
-  std::size_t zones = 0, pairs = 0;
+  std::size_t zones = 0, pairs = 0, stops = 0;
+  [[nodiscard]] bool any() const noexcept { return zones + stops > 0; }
 };
 [[nodiscard]] SeparatedCount separated_count(const Scene& scene) noexcept;
 

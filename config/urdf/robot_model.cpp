@@ -177,6 +177,8 @@ void ModelBuilder::read_limits(const UrdfJoint& joint, JointVariable& variable) 
                                       variable.lower, variable.upper, joint.name));
     }
   }
+  if (joint.limit->acceleration > 0.0) variable.urdf_acceleration = joint.limit->acceleration;
+  if (joint.limit->deceleration > 0.0) variable.urdf_deceleration = joint.limit->deceleration;
   const double velocity = joint.limit->velocity.value_or(0.0);
   if (velocity < 0.0) {
     model_.without_speed.emplace_back(

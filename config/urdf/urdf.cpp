@@ -57,11 +57,12 @@ void read_number(XmlReader& xml, const XMLElement& element, const char* name, do
   if (xml.optional(element, name) != nullptr) value = xml.number(element, name);
 }
 
-// Limits of URDF 1.2. They are numbers, and no bound depends on them.
-void check_dynamic_limits(XmlReader& xml, const XMLElement& limit) {
-  double unused = 0.0;
-  for (const char* name : {"acceleration", "deceleration", "jerk"})
-    read_number(xml, limit, name, unused);
+// Limits of URDF 1.2. Nothing depends on the jerk, which has to be a number.
+void read_dynamic_limits(XmlReader& xml, const XMLElement& limit, UrdfLimit& limits) {
+  double jerk = 0.0;
+  read_number(xml, limit, "acceleration", limits.acceleration);
+  read_number(xml, limit, "deceleration", limits.deceleration);
+  read_number(xml, limit, "jerk", jerk);
 }
 
 // A fixed joint has no axis and no position: what is said of them is not read.
@@ -82,7 +83,7 @@ UrdfJoint read_joint(XmlReader& xml, const XMLElement& element) {
     read_number(xml, *limit, "upper", limits.upper);
     if (xml.optional(*limit, "velocity") != nullptr)
       limits.velocity = xml.number(*limit, "velocity");
-    check_dynamic_limits(xml, *limit);
+    read_dynamic_limits(xml, *limit, limits);
   }
   if (const XMLElement* mimic = xml.optional_child(element, "mimic")) {
     UrdfMimic& follows = joint.mimic.emplace();

@@ -65,6 +65,7 @@ struct UrdfLink {
 struct UrdfLimit {
   double lower = 0.0, upper = 0.0;
   std::optional<double> velocity;
+  double acceleration = 0.0, deceleration = 0.0;  // of URDF 1.2; 0: not stated
 };
 
 // <mimic>: position = multiplier * (position of `joint`) + offset.

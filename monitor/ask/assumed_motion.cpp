@@ -13,6 +13,19 @@ constexpr double kCarrierRounding = 0x1p-44;
 
 }  // namespace
 
+std::optional<std::string> Posture::set_deviations() {
+  std::optional<std::string> fault;
+  trajectory_.for_each_deviation([&](std::uint32_t variable, double most) {
+    if (!(most >= 0.0) || !std::isfinite(most))
+      fault = "a deviation of joint \"" + scene_.variables[variable].name +
+              "\" is not a number from 0 on";
+    if (most > 0.0)
+      free_variables_.push_back(
+          {.variable = variable, .speed = kInfinity, .age = 1.0, .most = most});
+  });
+  return fault;
+}
+
 std::optional<std::string> Posture::set_free(const StatedJoint& stated, OthersMove others) {
   std::uint32_t variable = 0;
   if (auto text = set_variable(stated.name, stated.position, variable)) return text;
@@ -28,6 +41,10 @@ std::optional<std::string> Posture::set_free(const StatedJoint& stated, OthersMo
   const double most = std::max(joint.upper - stated.position, stated.position - joint.lower) +
                       joint.limit_tolerance;
   if (std::isfinite(most)) free.most = std::max(0.0, rounded_up(most));
+  if (!(stated.most >= 0.0))
+    return "what joint \"" + stated.name + "\" deviates by is not a number from 0 on";
+  free.most = std::min(free.most, stated.most);
+  if (free.most == 0.0) free.speed = 0.0;
   if (!std::isfinite(free.speed) && !std::isfinite(free.most)) {
     return "joint \"" + stated.name +
            "\" has neither a limit of its velocity nor of its position: hold it, state its motion, "
@@ -62,21 +79,22 @@ void Posture::note_free() {
   std::fill(is_of_question_.begin(), is_of_question_.end(), std::uint8_t{1});
   std::fill(may_deviate_.begin(), may_deviate_.end(), std::uint8_t{0});
   if (free_variables_.empty()) return;
-  std::vector<std::uint8_t> is_free(bounds_.size(), 0), is_stated(bounds_.size(), 0);
-  for (const FreeVariable& free : free_variables_) is_free[free.variable] = 1;
-  for (const std::uint32_t moved : trajectory_.moved()) is_stated[moved] = 1;
+  is_free_.assign(bounds_.size(), 0);
+  is_stated_.assign(bounds_.size(), 0);
+  for (const FreeVariable& free : free_variables_) is_free_[free.variable] = 1;
+  for (const std::uint32_t moved : trajectory_.moved()) is_stated_[moved] = 1;
   for (std::uint32_t r = 0; r < scene_.robots.size(); ++r) {
     const bool on_object = scene_.robots[r].base.kind == RobotBase::Kind::kObject;
     const auto carrier = scene_.robots[r].base.object;
     if (on_object && std::ranges::find(moving_objects_, carrier) != moving_objects_.end())
-      is_stated[chains_.of_carrier(r)] = 1;
+      is_stated_[chains_.of_carrier(r)] = 1;
   }
   for (std::uint32_t i = 0; i < scene_.objects.size(); ++i) {
     if (!is_link(i)) continue;
     bool free = false, stated = false;
     chains_.for_each_variable(i, [&](std::uint32_t v) {
-      free = free || is_free[v] != 0;
-      stated = stated || is_stated[v] != 0;
+      free = free || is_free_[v] != 0;
+      stated = stated || is_stated_[v] != 0;
     });
     may_deviate_[i] = free && any_free_;
     is_of_question_[i] = stated || !free;

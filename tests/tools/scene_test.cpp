@@ -316,5 +316,54 @@ TEST_F(SceneProgram, FailsWhereStatedErrorsDoNotExplainMeasuredPlaces) {
   EXPECT_EQ(run({"errors", cell, "--measured", file("far.csv")}), 2) << output_;
 }
 
+// The chain with a stop of each joint, beside a post.
+std::string stopping_chain(const std::string& stopping) {
+  return "name: chain\nunits: {length: m, angle: deg}\nrobots: [{name: chain, urdf: chain.urdf, "
+         "joints: {j: {velocity: 2}, k: {velocity: 4}}" +
+         stopping +
+         "}]\nobjects: [{name: post, fixed: true, sphere: {radius: 0.1}, pose: {xyz: [2, 0, 0]}}]\n"
+         "pairs: [{between: [chain, post]}]\n";
+}
+
+TEST_F(SceneProgram, PrintsAndPlotsHowFarEachJointGoesOn) {
+  std::ofstream(directory_ / "chain.urdf") << chain_urdf();
+  std::ofstream(directory_ / "stops.csv")
+      << "joint,speed_percent,time_ms,angle_deg\n1,50,300,8\n1,100,280,16\n";
+  std::ofstream(directory_ / "cell.yaml") << stopping_chain(
+      ", stopping: {reaction_ms: 40, path: kept, table: stops.csv, joints: {k: "
+      "{time_ms: 200, acceleration: 500}}}");
+  EXPECT_EQ(run({"stops", file("cell.yaml")}), 0) << output_;
+  EXPECT_EQ(output_,
+            "chain: category 1, brakes act after 40 ms, the path is kept\n"
+            "  joint                    from, per s    goes on for    in, ms\n"
+            "  j                           57.30 deg      8.000 deg       300\n"
+            "  j                          114.59 deg     16.000 deg       300\n"
+            "  k                           75.63 deg     15.126 deg       200\n"
+            "  k                          151.26 deg     30.252 deg       200\n"
+            "  k                          229.18 deg     45.837 deg       200\n"
+            "  k                      gains at most 500.00 deg per s each second\n");
+  EXPECT_EQ(run({"stops", file("cell.yaml"), "--plot", file("stops.svg")}), 0) << output_;
+  std::ifstream plot(file("stops.svg"));
+  const std::string svg((std::istreambuf_iterator<char>(plot)), {});
+  EXPECT_NE(svg.find("<svg"), std::string::npos);
+  EXPECT_NE(svg.find("percent of the full speed"), std::string::npos);
+  EXPECT_NE(svg.find("j, deg"), std::string::npos);
+}
+
+TEST_F(SceneProgram, SaysThatACellStatesNoStopsOrWhyItsTableIsRefused) {
+  std::ofstream(directory_ / "chain.urdf") << chain_urdf();
+  std::ofstream(directory_ / "cell.yaml") << stopping_chain("");
+  EXPECT_EQ(run({"stops", file("cell.yaml")}), 1);
+  EXPECT_NE(output_.find("the cell states no stops; expected `stopping` of a robot"),
+            std::string::npos)
+      << output_;
+  std::ofstream(directory_ / "stops.csv")
+      << "joint,speed_percent,time_ms,angle_deg\n1,50,300,8\n1,100,280,0.28\n";
+  std::ofstream(directory_ / "cell.yaml")
+      << stopping_chain(", stopping: {reaction_ms: 40, table: stops.csv, time_ms: 200}");
+  EXPECT_EQ(run({"stops", file("cell.yaml")}), 3);
+  EXPECT_NE(output_.find("stops.csv:3: found that 'j' stands"), std::string::npos) << output_;
+}
+
 }  // namespace
 }  // namespace clearance

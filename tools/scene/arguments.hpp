@@ -43,11 +43,17 @@ struct ErrorsArguments {
   std::string measured, link;       // a table of places, and the link whose they are
 };
 
+struct StopsArguments {
+  std::string cell;
+  std::string plot;  // an SVG; empty: none
+};
+
 // Each carries out one subcommand and returns the exit code.
 [[nodiscard]] int import_robot(ImportArguments arguments);
 [[nodiscard]] int allow_collisions(const AllowArguments& arguments);
 [[nodiscard]] int make_warehouse(const WarehouseArguments& arguments);
 [[nodiscard]] int report_errors(const ErrorsArguments& arguments);
+[[nodiscard]] int report_stops(const StopsArguments& arguments);
 [[nodiscard]] int report_models(const ReportArguments& arguments);
 
 }  // namespace clearance

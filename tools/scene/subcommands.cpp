@@ -12,10 +12,12 @@
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/recording/given_joints.hpp"
+#include "tools/plot/gnuplot.hpp"
 #include "tools/scene/allowed_collisions.hpp"
 #include "tools/scene/arguments.hpp"
 #include "tools/scene/error_report.hpp"
 #include "tools/scene/model_report.hpp"
+#include "tools/scene/stop_report.hpp"
 #include "tools/shared/progress_bar.hpp"
 
 namespace clearance {
@@ -134,6 +136,21 @@ int report_errors(const ErrorsArguments& arguments) {
   if (const auto* fault = std::get_if<ErrorReportFault>(&table)) return refuse(fault->text);
   print(stdout, "{}", std::get<std::string>(table));
   return kOk;
+}
+
+int report_stops(const StopsArguments& arguments) {
+  const auto cell = cell_or_errors(read_cell(arguments.cell, told_on_stderr()));
+  if (!cell) return kBadCell;
+  const std::string table = stop_table(cell->scene);
+  std::string fault =
+      table.empty() ? "the cell states no stops; expected `stopping` of a robot (config/KEYS.md)"
+                    : "";
+  print(stdout, "{}", table);
+  if (fault.empty() && !arguments.plot.empty())
+    fault = plot_svg(arguments.plot, 900, 500, stop_plot(cell->scene));
+  if (fault.empty()) return kOk;
+  print(stderr, "clearance-scene: {}\n", fault);
+  return kFailed;
 }
 
 int report_models(const ReportArguments& arguments) {
