@@ -17,6 +17,7 @@ SeparatedCount separated_count(const Scene& scene) noexcept {
     ++count.zones;
     count.pairs += zone.pairs.size();
   }
+  for (const Robot& robot : scene.robots) count.stops += robot.stopping.is_stated();
   return count;
 }
 

@@ -120,9 +120,11 @@ struct Scene {
       contacts;  // their pairs are published, and in no zone with `separation`
 };
 
-// Counts the zones with `separation`, and their pairs, each once per zone.
+// Counts the zones with `separation`, their pairs, each once per zone, and the robots that state
+// how they stop: what the message Separation has.
 struct SeparatedCount {
-  std::size_t zones = 0, pairs = 0;
+  std::size_t zones = 0, pairs = 0, stops = 0;
+  [[nodiscard]] bool any() const noexcept { return zones + stops > 0; }
 };
 [[nodiscard]] SeparatedCount separated_count(const Scene& scene) noexcept;
 

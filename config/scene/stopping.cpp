@@ -39,6 +39,17 @@ JointStop JointStop::by_time(double time) {
   return stop;
 }
 
+double JointStop::longest(double speed) const noexcept {
+  if (!(speed > 0.0)) return 0.0;
+  if (deceleration_ > 0.0 || points_.empty()) return kRoundedUp * (distance(speed) / speed);
+  double longest = 0.0;
+  for (const StopPoint& point : points_) {
+    longest = std::max(longest, point.distance / point.speed);
+    if (point.speed >= speed) return kRoundedUp * longest;
+  }
+  return kRoundedUp * std::max(longest, distance(speed) / speed);
+}
+
 double JointStop::distance(double speed) const noexcept {
   if (!(speed > 0.0)) return 0.0;
   if (deceleration_ > 0.0) return kRoundedUp * (0.5 * speed * speed / deceleration_);

@@ -27,6 +27,8 @@ class JointStop {
   // The joint stands after this time, s, and goes on until then as fast as at first.
   [[nodiscard]] static JointStop by_time(double time);
 
+  // The largest distance(s) / s of all speeds s up to this one, s.
+  [[nodiscard]] double longest(double speed) const noexcept;
   // From a speed of at least 0, per second.
   [[nodiscard]] double distance(double speed) const noexcept;
   [[nodiscard]] double time(double speed) const noexcept;

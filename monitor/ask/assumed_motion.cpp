@@ -13,6 +13,19 @@ constexpr double kCarrierRounding = 0x1p-44;
 
 }  // namespace
 
+std::optional<std::string> Posture::set_deviations() {
+  std::optional<std::string> fault;
+  trajectory_.for_each_deviation([&](std::uint32_t variable, double most) {
+    if (!(most >= 0.0) || !std::isfinite(most))
+      fault = "a deviation of joint \"" + scene_.variables[variable].name +
+              "\" is not a number from 0 on";
+    if (most > 0.0)
+      free_variables_.push_back(
+          {.variable = variable, .speed = kInfinity, .age = 1.0, .most = most});
+  });
+  return fault;
+}
+
 std::optional<std::string> Posture::set_free(const StatedJoint& stated, OthersMove others) {
   std::uint32_t variable = 0;
   if (auto text = set_variable(stated.name, stated.position, variable)) return text;
@@ -28,6 +41,10 @@ std::optional<std::string> Posture::set_free(const StatedJoint& stated, OthersMo
   const double most = std::max(joint.upper - stated.position, stated.position - joint.lower) +
                       joint.limit_tolerance;
   if (std::isfinite(most)) free.most = std::max(0.0, rounded_up(most));
+  if (!(stated.most >= 0.0))
+    return "what joint \"" + stated.name + "\" deviates by is not a number from 0 on";
+  free.most = std::min(free.most, stated.most);
+  if (free.most == 0.0) free.speed = 0.0;
   if (!std::isfinite(free.speed) && !std::isfinite(free.most)) {
     return "joint \"" + stated.name +
            "\" has neither a limit of its velocity nor of its position: hold it, state its motion, "

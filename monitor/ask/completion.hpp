@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
-#include "monitor/ask/present_inputs.hpp"
 #include "monitor/interface/motion_question.hpp"
+#include "monitor/interface/present_inputs.hpp"
 
 namespace clearance {
 

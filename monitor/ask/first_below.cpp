@@ -89,14 +89,29 @@ void MotionSearch::decide_margins() {
   exempt_.clear();
 }
 
+// The least distances say whether any margin is open at all.
+void MotionSearch::decide_by_pair() noexcept {
+  proven_until_ = posture_.trajectory().begin();
+  MarginAnswer& decided = answer_->margins.front();
+  decided.verdict = Verdict::kFree;
+  const auto keeps = [&](std::size_t p) {
+    return question_->margins_by_pair[p] == -kInfinity ||
+           proves(answer_->lower_by_pair[p], question_->margins_by_pair[p]);
+  };
+  bool all = !question_->only_margins;
+  for (std::size_t p = 0; all && p < answer_->lower_by_pair.size(); ++p) all = keeps(p);
+  if (!all) decide(decided);
+}
+
 void MotionSearch::decide(MarginAnswer& answer) noexcept {
-  if (!answer_->has_pair || proves(answer_->lower, answer.margin)) {
+  if (!answer_->has_pair || (!is_by_pair() && proves(answer_->lower, answer.margin))) {
     answer.verdict = Verdict::kFree;
     return;
   }
   const Stretch whole = posture_.trajectory().whole();
   answer.above_until = whole.from;
-  const bool any_pair_counts = question_->only_verdicts && contacts_.empty() && exempt_.empty();
+  const bool any_pair_counts =
+      question_->only_verdicts && contacts_.empty() && exempt_.empty() && !is_by_pair();
   if (any_pair_counts && is_below(answer_->upper, answer.margin)) {
     answer.verdict = Verdict::kBelow;
     answer.below_at = answer_->time;
@@ -186,7 +201,7 @@ void MotionSearch::find_first(const Stretch& stretch, const OpenList& list,
         note_pair(pair, answer.first, answer.second);
       }
       const bool located = found_ && answer.below_at <= stretch.to &&
-                           answer.below_at - stretch.from <= kInstant * duration_;
+                           answer.below_at - stretch.from <= question_->instant * duration_;
       if (near || unclear || located || !divides) {
         note_uncertain(pair);
         continue;

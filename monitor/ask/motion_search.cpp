@@ -2,7 +2,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
 #include <numeric>
+#include <utility>
 
 #include "config/scene/pairs_between.hpp"
 #include "monitor/bodies/directed_rounding.hpp"
@@ -41,6 +43,15 @@ MotionSearch::MotionSearch(const Scene& scene)
   contacts_.reserve(contacts);
   if (contacts > 0) contact_of_.reserve(pairs_.pairs().size());
   collect_separated();
+  leasts_.resize(std::max<std::size_t>(1, scene.pairs.size()));
+  std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> watched;
+  for (std::uint32_t p = 0; p < scene.pairs.size(); ++p)
+    watched.emplace(std::minmax(scene.pairs[p].first, scene.pairs[p].second), p);
+  for (std::uint32_t pair = 0; pair < pairs_.pairs().size(); ++pair) {
+    std::uint32_t first = 0, second = 0;
+    note_pair(pair, first, second);
+    watched_.push_back(watched.at(std::minmax(first, second)));
+  }
 }
 
 std::optional<std::string> MotionSearch::fault(const Question& question) const {
@@ -48,6 +59,8 @@ std::optional<std::string> MotionSearch::fault(const Question& question) const {
       !(question.scaling_tolerance > 0.0)) {
     return "a tolerance is not above 0";
   }
+  if (!question.margins_by_pair.empty() && question.margins_by_pair.size() != scene_.pairs.size())
+    return "the question needs a margin for each watched pair, or none";
   const auto wrong = [](double margin) -> std::optional<std::string> {
     if (margin >= 0.0 && std::isfinite(margin)) return std::nullopt;
     return "a margin is " + std::to_string(margin) + "; expected a finite number from 0 on, m";
@@ -88,7 +101,11 @@ std::optional<std::string> MotionSearch::ask(const Question& question, Answer& a
   if (auto text = take_contacts(question)) return text;
   begin(question, answer);
   if (!question.only_margins) find_least();
-  decide_margins();
+  if (is_by_pair()) {
+    decide_by_pair();
+  } else {
+    decide_margins();
+  }
   if (question.profile) make_profile(*question.profile);
   if (question.time_scaling) scale_time();
   return std::nullopt;
@@ -99,12 +116,17 @@ void MotionSearch::begin(const Question& question, Answer& answer) {
   answer_ = &answer;
   std::vector<MarginAnswer> margins = std::move(answer.margins);
   std::vector<ProfilePoint> profile = std::move(answer.profile);
+  std::vector<double> lower_by_pair = std::move(answer.lower_by_pair);
   answer = {};
   answer.margins = std::move(margins);
   answer.profile = std::move(profile);
+  answer.lower_by_pair = std::move(lower_by_pair);
   answer.profile.clear();
-  answer.margins.assign(question.margins.size() + question.margins_between.size(), {});
-  answer.upper = reached_ = kInfinity;
+  answer.margins.assign(
+      is_by_pair() ? 1 : question.margins.size() + question.margins_between.size(), {});
+  answer.lower_by_pair.assign(question.margins_by_pair.size(), -kInfinity);
+  answer.upper = kInfinity;
+  std::ranges::fill(leasts_, Least());
   duration_ = posture_.trajectory().end() - posture_.trajectory().begin();
   pairs_.forget();
   const OpenList all = all_pairs();
@@ -153,7 +175,7 @@ MotionSearch::Pair MotionSearch::pair_at(std::uint32_t pair, const TipMotion& mo
     approach_ = *approach;
     Nearing& nearing = approach_.nearing;
     Nearing of_base;
-    if (bundle.base_is_link) {
+    if (bundle.base_is_link && posture_.may_deviate(base.object)) {
       of_base = posture_.chains().nearing(bundle.chain, base.object, base.sphere_in_world,
                                           posture_.bounds(), posture_.free_variables());
     }
@@ -194,7 +216,8 @@ void MotionSearch::note_pair(std::uint32_t pair, std::uint32_t& first,
 void MotionSearch::note_upper(const PairAtMiddle& found, double upper, double at,
                               std::uint32_t pair) noexcept {
   const double open = 2.0 * bundle_of(pair).model_error;
-  reached_ = std::min(reached_, open == 0.0 ? upper : rounded_up(upper - open));
+  Least& least = least_of(pair);
+  least.reached = std::min(least.reached, open == 0.0 ? upper : rounded_up(upper - open));
   if (!(upper < answer_->upper)) return;
   answer_->upper = upper;
   answer_->time = at;

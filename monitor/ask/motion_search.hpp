@@ -68,6 +68,13 @@ class MotionSearch {
     double least_allowed = 0.0;                      // m: minus the depth
     double until = kInfinity, distance = kInfinity;  // s, m: its ends
   };
+  // What is known of the least distance: of all pairs, or of one pair of objects.
+  struct Least {
+    double closed = kInfinity;  // m: the lower bound of all stretches that are decided
+    // The least lower bound that an instant so far allows at all, m. It is below the upper one
+    // where the model has stated errors.
+    double reached = kInfinity;
+  };
   // A part pair at the present instant.
   struct Pair {
     const PosedPart& base;
@@ -93,8 +100,15 @@ class MotionSearch {
     return answer_->queries + answer_->placements >= question_->work_limit;
   }
 
+  // Each pair of objects has its own least distance and its own margin.
+  [[nodiscard]] bool is_by_pair() const noexcept { return !question_->margins_by_pair.empty(); }
+  [[nodiscard]] Least& least_of(std::uint32_t pair) noexcept {
+    return leasts_[is_by_pair() ? watched_[pair] : 0];
+  }
+
   // The least distance (least_distance.cpp).
   void find_least();
+  void write_least() noexcept;
   void seed_upper(const OpenList& all) noexcept;
   [[nodiscard]] bool is_as_good_as_at_middle(double lower, double model_error,
                                              const PairAtMiddle& found,
@@ -109,6 +123,7 @@ class MotionSearch {
   // The distance that a pair has to keep up to an instant, m: a margin, or less for a contact.
   [[nodiscard]] double limit_until(double instant, std::uint32_t pair,
                                    double margin) const noexcept {
+    if (is_by_pair()) return question_->margins_by_pair[watched_[pair]];
     if (!exempt_.empty() && exempt_[pair] != 0) return -kInfinity;
     if (contacts_.empty() || contact_of_[pair] == kNotMeant) return margin;
     const Meant& meant = contacts_[contact_of_[pair]];
@@ -117,6 +132,7 @@ class MotionSearch {
 
   // The margins (first_below.cpp).
   void decide_margins();
+  void decide_by_pair() noexcept;
   void decide(MarginAnswer& answer) noexcept;
   // A margin counts for no other pairs from now on; all pairs: none is exempt.
   void exempt_kept(double margin);
@@ -160,13 +176,11 @@ class MotionSearch {
   const Question* question_ = nullptr;
   Answer* answer_ = nullptr;
   double duration_ = 0.0;
-  double closed_lower_ = kInfinity;  // of all stretches that are decided
-  // The least lower bound that an instant so far allows at all, m. It is below the upper one where
-  // the model has stated errors.
-  double reached_ = kInfinity;
-  bool found_ = false;         // an instant below the margin is known
-  bool uncertain_ = false;     // a stretch is known that is not proven to be above
-  double proven_until_ = 0.0;  // s: before this, a larger margin was proven
+  std::vector<Least> leasts_;           // one, or by Scene::pairs
+  std::vector<std::uint32_t> watched_;  // by pair of parts: index into Scene::pairs
+  bool found_ = false;                  // an instant below the margin is known
+  bool uncertain_ = false;              // a stretch is known that is not proven to be above
+  double proven_until_ = 0.0;           // s: before this, a larger margin was proven
 };
 
 }  // namespace clearance

@@ -83,7 +83,7 @@ TipMotion tip_motion(const Bundle& bundle, const Stretch& stretch, double middle
   motion.moved = chains.displacement(bundle.chain, sphere, posture.bounds());
   motion.error = posture.trajectory().position_rounding() * bundle.sum_of_reaches +
                  posture.carrier_rounding(sphere, bundle.object_base) + bundle.model_error;
-  if (posture.any_free()) {
+  if (posture.may_deviate(bundle.object_tip)) {
     motion.nearing = chains.nearing(bundle.chain, bundle.object_tip, sphere, posture.bounds(),
                                     posture.free_variables());
   }

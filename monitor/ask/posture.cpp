@@ -45,6 +45,7 @@ Posture::Posture(const Scene& scene)
       variables_(scene.variables.size()),
       bounds_(scene.variables.size() + 2 * scene.robots.size()),
       kinematics_(scene.robots),
+      moves_(scene.robots.size(), 0),
       bases_(scene.robots.size()),
       robot_of_object_(scene.objects.size(), kNoLink),
       link_of_object_(scene.objects.size(), kNoLink),
@@ -52,6 +53,7 @@ Posture::Posture(const Scene& scene)
       radii_(radii_of(scene, parts_)),
       pose_(scene.objects.size()),
       present_(scene.objects.size(), 0),
+      left_out_(scene.objects.size(), 0),
       speed_(scene.objects.size(), 0.0),
       age_(scene.objects.size(), 0.0),
       turn_speed_(scene.objects.size(), 0.0),
@@ -72,6 +74,7 @@ Posture::Posture(const Scene& scene)
     }
   }
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+    object_named_.emplace(scene.objects[i].name, i);
     present_[i] = scene.objects[i].fixed || is_link(i);
     if (scene.objects[i].fixed) {
       pose_[i] = scene.objects[i].world_from_object;
@@ -91,6 +94,7 @@ std::optional<std::string> Posture::take(const Question& question) {
   free_carriers(question);
   note_free();
   place_bases();
+  note_moving();
   return std::nullopt;
 }
 
@@ -106,6 +110,7 @@ std::optional<std::string> Posture::take_joints(const Question& question) {
     if (auto text = hold(held)) return text;
   }
   free_variables_.clear();
+  if (auto text = set_deviations()) return text;
   for (const StatedJoint& stated : question.joints) {
     if (auto text = set_free(stated, question.others)) return text;
   }
@@ -190,11 +195,10 @@ std::optional<std::string> Posture::slide_out_of_limits() const {
 
 std::optional<std::string> Posture::find_free(const std::string& name,
                                               std::uint32_t& object) const {
-  const auto at = std::find_if(scene_.objects.begin(), scene_.objects.end(),
-                               [&](const Object& other) { return other.name == name; });
-  if (at == scene_.objects.end()) return "the cell has no object \"" + name + "\"";
-  object = static_cast<std::uint32_t>(at - scene_.objects.begin());
-  if (at->fixed || is_link(object)) {
+  const auto at = object_named_.find(name);
+  if (at == object_named_.end()) return "the cell has no object \"" + name + "\"";
+  object = at->second;
+  if (scene_.objects[object].fixed || is_link(object)) {
     return "object \"" + name + "\" is fixed or part of a robot: its pose is known";
   }
   if (present_[object] != 0) return "the pose of object \"" + name + "\" is stated twice";
@@ -204,7 +208,7 @@ std::optional<std::string> Posture::find_free(const std::string& name,
 std::optional<std::string> Posture::take_poses(const Question& question) {
   const bool within_speed = question.others == OthersMove::kWithinMaxSpeed;
   for (const std::uint32_t i : free_) {
-    present_[i] = 0;
+    present_[i] = left_out_[i] = 0;
     age_[i] = turn_speed_[i] = 0.0;
     speed_[i] = within_speed ? scene_.objects[i].max_speed : 0.0;
     approaches_[i] = {};
@@ -213,6 +217,10 @@ std::optional<std::string> Posture::take_poses(const Question& question) {
     std::uint32_t i = 0;
     if (auto text = find_free(stated.object, i)) return text;
     if (is_seen(i)) return sensor_named(stated.object) + "its pose comes with a frame";
+    if (!stated.is_known) {
+      left_out_[i] = 1;
+      continue;
+    }
     if (!(stated.turn_speed >= 0.0))
       return "the turn_speed of object \"" + stated.object + "\" is not a number from 0 on";
     if (auto text = take_pose(stated.object, i, stated.world_from_object, stated.age)) return text;
@@ -229,6 +237,10 @@ std::optional<std::string> Posture::take_frame(const SeenFrame& frame) {
   std::uint32_t i = 0;
   if (auto text = find_free(frame.sensor, i)) return text;
   if (!is_seen(i)) return "object \"" + frame.sensor + "\" is no sensor, so it has no frame";
+  if (!frame.is_known) {
+    left_out_[i] = 1;
+    return std::nullopt;
+  }
   if (frame.cloud == nullptr || frame.cloud->size() == 0)
     return sensor_named(frame.sensor) + "its frame is empty, which is not known to be clear";
   if (!(frame.pose_error >= 0.0) || !std::isfinite(frame.pose_error))
@@ -275,6 +287,7 @@ std::optional<std::string> Posture::open_object(const Question& question) {
   for (const std::uint32_t i : free_) {
     const Object& object = scene_.objects[i];
     all_present_ = all_present_ && present_[i] != 0;
+    if (left_out_[i] != 0) continue;
     if (present_[i] == 0 && !object.absent && object.is_seen())
       return sensor_named(object.name) +
              "it has no frame, so that nothing is known of what it sees";
@@ -298,6 +311,18 @@ void Posture::place_resting(std::uint32_t object) noexcept {
   }
 }
 
+// The robots whose links are elsewhere at other instants.
+void Posture::note_moving() noexcept {
+  is_placed_ = false;
+  std::ranges::fill(moves_, std::uint8_t{0});
+  for (const std::uint32_t moved : trajectory_.moved()) moves_[scene_.variables[moved].robot] = 1;
+  for (std::uint32_t r = 0; r < scene_.robots.size(); ++r) {
+    const RobotBase& base = scene_.robots[r].base;
+    if (base.kind == RobotBase::Kind::kObject && !moving_objects_.empty()) moves_[r] = 1;
+    if (base.kind == RobotBase::Kind::kLink && moves_[base.robot] != 0) moves_[r] = 1;
+  }
+}
+
 void Posture::place_bases() noexcept {
   for (std::size_t r = 0; r < bases_.size(); ++r) {
     const RobotBase& base = scene_.robots[r].base;
@@ -312,7 +337,8 @@ void Posture::place(const Stretch& stretch, double at) noexcept {
   trajectory_.place(stretch, at, variables_, bounds_);
   if (!free_.empty()) place_free_objects(stretch, at);
   if (!moving_objects_.empty()) place_carriers();
-  kinematics_.place(variables_, bases_);
+  kinematics_.place(variables_, bases_, is_placed_ ? moves_ : std::span<const std::uint8_t>());
+  is_placed_ = true;
   chains_.place(kinematics_, bases_);
   if (any_free_) note_freedom(stretch, at);
   ++instant_;

@@ -6,6 +6,8 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <string_view>
+#include <unordered_map>
 #include <vector>
 
 #include "config/scene/scene.hpp"
@@ -94,6 +96,7 @@ class Posture {
 
   [[nodiscard]] std::optional<std::string> take_joints(const Question& question);
   [[nodiscard]] std::optional<std::string> hold(const HeldJoint& held);
+  [[nodiscard]] std::optional<std::string> set_deviations();
   [[nodiscard]] std::optional<std::string> set_free(const StatedJoint& stated, OthersMove others);
   [[nodiscard]] std::optional<std::string> set_variable(const std::string& name, double position,
                                                         std::uint32_t& variable);
@@ -113,6 +116,7 @@ class Posture {
                                                      const Pose& pose, double age);
   void place_resting(std::uint32_t object) noexcept;
   void place_bases() noexcept;
+  void note_moving() noexcept;
   void place_link_part(std::uint32_t index) noexcept;
   void place_free_objects(const Stretch& stretch, double at) noexcept;
   void place_carriers() noexcept;
@@ -120,6 +124,7 @@ class Posture {
   [[nodiscard]] const LinkState& link_state(std::uint32_t object) const noexcept;
 
   const Scene& scene_;
+  std::unordered_map<std::string_view, std::uint32_t> object_named_;
   std::vector<PosedPart> parts_;
   std::vector<std::uint32_t> first_part_;
   std::vector<std::uint64_t> placed_at_;  // by part: the number of the instant
@@ -129,13 +134,15 @@ class Posture {
   std::vector<TrackedVariable> variables_;
   std::vector<VariableBounds> bounds_;
   ForwardKinematics kinematics_;
+  std::vector<std::uint8_t> moves_;  // by robot
+  bool is_placed_ = false;           // all robots are, in this question
   std::vector<LinkState> bases_;
   std::vector<std::uint32_t> robot_of_object_, link_of_object_;  // kNoLink: not a link
-  std::vector<std::uint32_t> free_;    // objects that are neither fixed nor links
-  std::vector<std::uint8_t> carries_;  // by object: a robot stands on it
-  std::vector<double> radii_;          // by object: about its origin, m
-  std::vector<Pose> pose_;             // of objects that are not links
-  std::vector<std::uint8_t> present_;  // by object
+  std::vector<std::uint32_t> free_;               // objects that are neither fixed nor links
+  std::vector<std::uint8_t> carries_;             // by object: a robot stands on it
+  std::vector<double> radii_;                     // by object: about its origin, m
+  std::vector<Pose> pose_;                        // of objects that are not links
+  std::vector<std::uint8_t> present_, left_out_;  // by object
   bool all_present_ = true;
   std::vector<double> speed_, age_;  // by object: that are assumed, m/s; of a stated pose, s
   std::vector<double> turn_speed_;   // by object, rad/s

@@ -42,6 +42,8 @@ std::optional<std::string> fault(const JointTrajectory& motion) {
   if (!motion.velocities.empty() && motion.velocities.size() != motion.positions.size()) {
     return "the motion needs as many velocities as positions, or none";
   }
+  if (!motion.deviations.empty() && motion.deviations.size() != joints)
+    return "the motion needs a deviation for each joint, or none";
   if (!all_within(motion.times, 1e9)) return "a time is not a finite number of at most 1e9 s";
   if (!all_within(motion.positions, kLargestJoint) ||
       !all_within(motion.velocities, kLargestJoint)) {

@@ -77,6 +77,14 @@ class Trajectory {
     }
     return is_outside(held);
   }
+  // Calls use(variable, most) for each joint that may be off its waypoints.
+  template <class Use>
+  void for_each_deviation(const Use& use) const {
+    for (const Track& track : tracks_) {
+      for (std::size_t joint = 0; joint < track.motion->deviations.size(); ++joint)
+        use(moved_[track.first_joint + joint], track.motion->deviations[joint]);
+    }
+  }
   // Indices into Scene::variables of the joints that have waypoints.
   [[nodiscard]] std::span<const std::uint32_t> moved() const noexcept { return moved_; }
   // No computed position is farther from the exact one, rad or m. It includes what the rounding of

@@ -224,8 +224,10 @@ void ForwardKinematics::place_root(std::uint32_t robot, std::span<const LinkStat
 }
 
 void ForwardKinematics::place(std::span<const TrackedVariable> variables,
-                              std::span<const LinkState> bases) noexcept {
+                              std::span<const LinkState> bases,
+                              std::span<const std::uint8_t> which) noexcept {
   for (std::uint32_t r = 0; r < robots_.size(); ++r) {
+    if (!which.empty() && which[r] == 0) continue;
     place_root(r, bases);
     LinkState* links = &links_[first_link_[r]];
     const JointFrame* frames = &frames_[first_link_[r]];

@@ -46,8 +46,10 @@ class ForwardKinematics {
   // Places all links. `variables` has the order of Scene::variables. `bases`, by robot, has the
   // states of the objects on which robots stand. Entries of robots that stand on no object are not
   // read. The unobserved motion of a robot on a late object has no bound, because the object's
-  // speed limit holds only for the object's own points. Does not allocate, throw or lock.
-  void place(std::span<const TrackedVariable> variables, std::span<const LinkState> bases) noexcept;
+  // speed limit holds only for the object's own points. Robots that are 0 in `which` stay as they
+  // are; empty: none does. Does not allocate, throw or lock.
+  void place(std::span<const TrackedVariable> variables, std::span<const LinkState> bases,
+             std::span<const std::uint8_t> which = {}) noexcept;
 
   // The states of the links at the last place(), in the order of Robot::links.
   [[nodiscard]] std::span<const LinkState> links(std::uint32_t robot) const noexcept {

@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -25,6 +26,8 @@ struct JointTrajectory {
   std::vector<double> times;        // s, increasing; one for each row
   std::vector<double> positions;    // row by row, one entry for each joint; rad or m
   std::vector<double> velocities;   // as positions, rad/s or m/s; empty: linear
+  // At any instant, a joint may be off by this; one entry for each joint, rad or m; empty: 0.
+  std::vector<double> deviations = {};
 };
 
 // A joint that stays where it is.
@@ -36,8 +39,9 @@ struct HeldJoint {
 // A joint of a robot whose motion nothing states.
 struct StatedJoint {
   std::string name;
-  double position = 0.0;  // rad or m
-  double age = 0.0;       // s, from 0 on: it was there this long before the first waypoint
+  double position = 0.0;    // rad or m
+  double age = 0.0;         // s, from 0 on: it was there this long before the first waypoint
+  double most = kInfinity;  // rad or m: it deviates from there by no more
 };
 
 struct StatedPose {
@@ -46,6 +50,7 @@ struct StatedPose {
   double age = 0.0;  // s, from 0 on: it was there this long before the first waypoint
   // An object on which a robot stands does not rotate faster, rad/s. Infinity: not stated.
   double turn_speed = kInfinity;
+  bool is_known = true;  // false: the object is left out, so that no bound counts it
 };
 
 // The newest frame of a sensor of the cell. What it shows comes nearer by the `max_speed` of the
@@ -56,6 +61,7 @@ struct SeenFrame {
   Pose world_from_sensor;                  // at the stamp
   double pose_error = 0.0;  // m: no element is farther from its exact place in the world
   double age = 0.0;         // s, from 0 on: the stamp is this long before the first waypoint
+  bool is_known = true;     // as in StatedPose
 };
 
 // The motion of an object that is neither fixed nor part of a robot. Between two times its origin
@@ -129,9 +135,14 @@ struct Question {
   // every posture (monitor/pairs/kept_near.hpp).
   std::vector<double> margins = {0.0};
   std::vector<MarginBetween> margins_between;  // their answers follow those of `margins`
-  double tolerance = 1e-3;                     // m: `upper` - `lower` at the end
+  // By Scene::pairs, the margin of each pair, m; -infinity: it has none. `margins` and
+  // `margins_between` do not count then. Empty: not asked for.
+  std::span<const double> margins_by_pair = {};
+  double tolerance = 1e-3;  // m: `upper` - `lower` at the end
   // m: a margin is undecided if the least distance is nearer to it than this.
   double margin_tolerance = 1e-10;
+  // The first instant below a margin is found to within this share of the duration.
+  double instant = 1e-7;
   // m: a motion that is certainly farther away than this is not examined more closely.
   double far_enough = 1e300;
   // Only the margins are asked for. `lower` and `upper` are then as good as these needed.
@@ -193,6 +204,9 @@ struct Answer {
   Vec3 point_on_first = Vec3::Zero(), point_on_second = Vec3::Zero();
   bool has_pair = false;              // false: no watched pair has a link of the cell's robots
   std::vector<MarginAnswer> margins;  // in the order of the question
+  // With Question::margins_by_pair: by Scene::pairs, a lower bound of the pair's distance, m;
+  // infinity: the motion does not move the pair. `margins` has one answer, for all pairs.
+  std::vector<double> lower_by_pair = {};
   // In the order of time. Each point begins where the last one ends; together they are the whole
   // motion. Empty if it was not asked for, or no pair is watched.
   std::vector<ProfilePoint> profile;

@@ -58,6 +58,10 @@ struct PairReport {
   // cell states (config/KEYS.md). `distance`, witnesses and normal are those of the model. NaN if
   // the pair is unknown.
   double model_error = 0.0;
+  // m: a lower bound of the distance until a robot stands that is told to stop now
+  // (RobotStop), rounded to no worse than 0. -infinity if that is not known; NaN if neither object
+  // moves with a robot that states stops.
+  double stop_lower = 0.0;
   // The closest points, world. Of objects that overlap: the point of each that lies deepest in the
   // other along the normal, as in DistanceResult.
   Vec3 witness_a = Vec3::Zero(), witness_b = Vec3::Zero();
@@ -159,6 +163,23 @@ struct ZoneSeparation {
   SeparationValidity validity = SeparationValidity::kUnknown;
   std::uint32_t pair = 0;  // the pair with the least scaling, then the least `remaining`
   double remaining = 0.0, speed_limit = 0.0, scaling = 0.0;
+};
+
+// A robot that states how it stops: from the present positions and velocities of its joints until
+// it stands (monitor/ask/STOPS.md).
+struct RobotStop {
+  std::uint32_t robot = 0;  // index into Scene::robots
+  // kMeasured: all velocities are known. kAssumed: limits stand in for some. kUnknown: an input
+  // that a pair of the robot depends on is not known, or the robot is late; `scaling` is 0.
+  SeparationValidity validity = SeparationValidity::kUnknown;
+  // The largest share of its present speed, 0 to 1, from which it stops clear of everything by the
+  // stated margins. 1 also if it stands; 0 if no share is certified.
+  double scaling = 0.0;
+  // The least of (PairReport::stop_lower - margin) over its pairs, m; -infinity: not known.
+  double clearance = 0.0;
+  std::uint32_t pair = 0;  // that has this clearance, or limits the scaling; Scene::pairs
+  double share = 0.0;      // of its motion to the stop, 0 to 1, that is certainly clear
+  double time = 0.0;       // s: until it stands, from the report on; NaN: not known
 };
 
 // Whether the contact that is allowed for a pair is as allowed.
@@ -279,6 +300,7 @@ struct Report {
   // The zones with `separation`, in scene order, and their pairs, zone by zone; sized once.
   std::vector<ZoneSeparation> separated_zones;
   std::vector<PairSeparation> separated_pairs;
+  std::vector<RobotStop> stops;  // of the robots that state how they stop, in scene order
   Gradients gradients;
   // contact_pairs() of the scene, in ascending order of pairs; sized once. `minimum` and
   // `lower_all` include these pairs: an entry here says whether the contact is allowed.

@@ -53,6 +53,7 @@ struct PairFields {
     visit(Field{"upper"}, pair.upper...);
     visit(Field{"swept_lower"}, pair.swept_lower...);
     visit(Field{"model_error"}, pair.model_error...);
+    visit(Field{"stop_lower"}, pair.stop_lower...);
     visit(Field{"witness_a"}, pair.witness_a...);
     visit(Field{"witness_b"}, pair.witness_b...);
     visit(Field{"normal"}, pair.normal...);
@@ -119,6 +120,20 @@ struct ZoneSeparationFields {
     visit(Field{"remaining"}, zone.remaining...);
     visit(Field{"speed_limit"}, zone.speed_limit...);
     visit(Field{"scaling"}, zone.scaling...);
+  }
+};
+
+// RobotStop, in the report and on the wire.
+struct RobotStopFields {
+  template <class Visit, class... Stop>
+  static constexpr void for_each(Visit&& visit, Stop&... stop) {
+    visit(Field{"robot"}, stop.robot...);
+    visit(Field{"validity", Meaning::kValidity}, stop.validity...);
+    visit(Field{"scaling"}, stop.scaling...);
+    visit(Field{"clearance"}, stop.clearance...);
+    visit(Field{"pair", Meaning::kPair}, stop.pair...);
+    visit(Field{"share"}, stop.share...);
+    visit(Field{"time"}, stop.time...);
   }
 };
 
@@ -214,6 +229,7 @@ struct ReportFields {
     visit(Field{"zones"}, report.zones...);
     visit(Field{"separated_pairs"}, report.separated_pairs...);
     visit(Field{"separated_zones"}, report.separated_zones...);
+    visit(Field{"stops"}, report.stops...);
     visit(Field{"gradients"}, report.gradients...);
     visit(Field{"rejected"}, report.rejected...);
   }
@@ -230,6 +246,8 @@ template <>
 struct FieldsOf<PairSeparation> : PairSeparationFields {};
 template <>
 struct FieldsOf<ZoneSeparation> : ZoneSeparationFields {};
+template <>
+struct FieldsOf<RobotStop> : RobotStopFields {};
 template <>
 struct FieldsOf<ContactReport> : ContactFields {};
 template <>
@@ -286,6 +304,7 @@ static_assert(fields_detail::kListIsComplete<PairReport>);
 static_assert(fields_detail::kListIsComplete<ZoneReport>);
 static_assert(fields_detail::kListIsComplete<PairSeparation>);
 static_assert(fields_detail::kListIsComplete<ZoneSeparation>);
+static_assert(fields_detail::kListIsComplete<RobotStop>);
 static_assert(fields_detail::kListIsComplete<ContactReport>);
 static_assert(fields_detail::kListIsComplete<HiddenReport>);
 static_assert(fields_detail::kListIsComplete<GradientAlternative>);

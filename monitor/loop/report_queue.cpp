@@ -47,6 +47,7 @@ ReportQueue::ReportQueue(const Scene& scene, const ReportQueueOptions& options)
     slot.report.zones.resize(scene.zones.size());
     slot.report.separated_zones.resize(separated.zones);
     slot.report.separated_pairs.resize(separated.pairs);
+    slot.report.stops.resize(separated.stops);
     slot.report.gradients = gradients;
     slot.report.contacts.resize(contacts);
     slot.report.hidden.resize(hidden);

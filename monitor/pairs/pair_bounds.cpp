@@ -226,6 +226,7 @@ PairReport unknown_report() noexcept {
   report.lower = report.swept_lower = -kInfinity;
   report.upper = kInfinity;
   report.distance = report.closing_speed = report.time_to_contact = report.model_error = kNan;
+  report.stop_lower = kNan;
   report.witness_a = report.witness_b = report.normal = Vec3::Constant(kNan);
   return report;
 }
@@ -265,6 +266,7 @@ void write_pair(std::uint32_t pair, const PairBounds& bounds, const TickView& vi
   const TrackedObject& b = view.objects[table.entries[pair].object_b];
   if (!is_known(bounds.status)) report = unknown_report();
   report.pair = pair;
+  report.stop_lower = kNan;  // unless the stage 'stop' writes it
   report.age_a_ns = a.input.age_ns(view.now_ns);
   report.age_b_ns = b.input.age_ns(view.now_ns);
   report.refresh_age_cycles = view.cycle - table.entries[pair].refreshed_cycle;

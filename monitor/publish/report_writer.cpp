@@ -133,7 +133,7 @@ bool ReportWriter::is_to_continue() const {
 
 // Topics that only some cells need.
 void ReportWriter::open_topics(const Scene& scene) {
-  if (separation_ == 0 && separated_count(scene).zones > 0)
+  if (separation_ == 0 && separated_count(scene).any())
     separation_ = make_writer(participant_, topics_, TopicKind::kSeparation);
   if (gradients_ == 0 && scene.gradients) {
     gradients_ = make_writer(participant_, topics_, TopicKind::kGradients,
@@ -242,7 +242,7 @@ void ReportWriter::write_report(const QueuedReport& queued) {
     return;
   }
   const bool published = write_distances(queued, tag);
-  if (leads_ && separated_count(now_->cell.scene).zones > 0) write_separation(queued.report);
+  if (leads_ && separated_count(now_->cell.scene).any()) write_separation(queued.report);
   if (leads_ && now_->cell.scene.gradients) {
     clearance_msg_Gradients& gradients = now_->gradients.of(queued.report, dds_time());
     gradients.daemon = identity_.id;

@@ -24,21 +24,23 @@ dds_entity_t make_writer(Participant& participant, const RosType& type, const st
   return topic.empty() ? 0 : participant.ros_writer(type, ros_dds_name(topic));
 }
 
-// Zones define the scaling of speeds: without any, 1 would say that everything is clear.
+// Zones and stops define the scaling of speeds: without any, 1 would say that everything is clear.
 dds_entity_t make_speed_scaling_writer(Participant& participant, const Cell& cell) {
   const std::string& topic = cell.ros.outputs.speed_scaling;
-  if (topic.empty() || !cell.scene.zones.empty())
+  if (topic.empty() || !cell.scene.zones.empty() || separated_count(cell.scene).any())
     return make_writer(participant, kRosFloat64, topic);
   log_line(lines::kNoSpeedScaling, topic);
   return 0;
 }
 
-// Returns the smallest scaling that separation monitoring asks for. In a cell without it, zones
+// Returns the smallest scaling that separation monitoring and stops ask for. Without these, zones
 // switch between two speeds: 0 if any zone is active, otherwise 1. It is 0 while a
 // pair is unknown or overlaps, because that makes its zone active.
 double speed_scaling(const Report& report) noexcept {
-  if (!report.separated_zones.empty())
-    return std::ranges::min(report.separated_zones, {}, &ZoneSeparation::scaling).scaling;
+  double least = 1.0;
+  for (const ZoneSeparation& zone : report.separated_zones) least = std::min(least, zone.scaling);
+  for (const RobotStop& stop : report.stops) least = std::min(least, stop.scaling);
+  if (!report.separated_zones.empty() || !report.stops.empty()) return least;
   return std::ranges::any_of(report.zones, &ZoneReport::active) ? 0.0 : 1.0;
 }
 

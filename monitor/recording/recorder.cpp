@@ -123,7 +123,8 @@ void Recorder::write_report(const Report& report, std::span<const SourceUse> sou
   write_used(sources, report.now_ns);
   for (const WaitingSide& side : std::exchange(sides_, {}))
     sink_->write(side.topic, report.now_ns, side.stamp_ns, side.cdr);
-  if (!report.separated_zones.empty()) write_separation(report, publish_ns);
+  if (!report.separated_zones.empty() || !report.stops.empty())
+    write_separation(report, publish_ns);
   if (holds(TopicKind::kDistances)) {
     to_wire(report, sources, publish_ns, *now_->distances);
     now_->distances->lineage = lineage;

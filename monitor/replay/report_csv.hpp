@@ -13,7 +13,7 @@ namespace clearance {
 
 // Columns: tick,now_ns,object_a,object_b, then the fields of PairReport in their order, without
 // pair, parts and evaluated_cycle:
-// status,distance,lower,upper,swept_lower,model_error,ax,ay,az,bx,by,bz,nx,ny,
+// status,distance,lower,upper,swept_lower,model_error,stop_lower,ax,ay,az,bx,by,bz,nx,ny,
 // nz,closing_speed,time_to_contact,age_a_ns,age_b_ns,refresh_age_cycles. They are in SI units and
 // in the world frame, and numbers read back exactly. The column scene_revision is that of
 // the cell which was in force, in hexadecimal digits; its names are in the row. After it come the

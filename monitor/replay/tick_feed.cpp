@@ -27,7 +27,7 @@ TickFeed::TickFeed(const std::vector<std::filesystem::path>& files, SceneHistory
       tick_hz_(tick_hz) {
   const Scene& scene = history.first().scene;
   const RecordedRunOptions options{
-      .separations = history.has_changes() || separated_count(scene).zones > 0,
+      .separations = history.has_changes() || separated_count(scene).any(),
       .gradients = history.has_changes() || scene.gradients,
       .frames = by_report_ && !scene.sensors.empty(),
       .states = by_report_};

@@ -1,4 +1,5 @@
 #include "monitor/requests/input_states.hpp"
+#include "monitor/tick/read_inputs.hpp"
 
 #include <utility>
 

@@ -7,7 +7,7 @@
 #include <mutex>
 
 #include "config/cell/cell.hpp"
-#include "monitor/ask/present_inputs.hpp"
+#include "monitor/interface/present_inputs.hpp"
 #include "monitor/loop/tick_loop.hpp"
 
 namespace clearance {

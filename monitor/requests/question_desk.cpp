@@ -7,6 +7,7 @@
 #include "monitor/ask/completion.hpp"
 #include "monitor/ask/named_answer.hpp"
 #include "monitor/loop/realtime.hpp"
+#include "monitor/tick/read_inputs.hpp"
 
 namespace clearance {
 namespace {

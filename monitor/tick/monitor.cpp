@@ -15,6 +15,7 @@
 //   judge          PairTable, ZoneCrossings    -> Contacts: whether contacts are as allowed
 //   conclude       PairTable, ZoneCrossings    -> Zones, minimum, published pairs of the Report
 //   separate       published pairs             -> zones with `separation` of the Report
+//   stop           inputs, published pairs     -> stops of robots in the Report
 //   differentiate  published pairs, links      -> gradients of the Report
 //   report         all of these                -> the rest of the Report, which no stage reads
 #include "monitor/tick/monitor.hpp"
@@ -80,6 +81,7 @@ const Report& Monitor::tick(std::span<const PoseSample> samples,
   s.conclusion =
       conclude(s.published, displaced, s.culling, s.crossings, tick, s.zones, s.report.pairs);
   s.separations.write(s.inputs.objects, s.inputs.cycle, s.report);
+  s.stops.write(s.inputs, s.clouds.get(), s.contacts, s.report);
   s.differentiation.differentiate(s.report.pairs, tick, s.inputs.robots, s.report.gradients);
   s.finish_report(s.scene.budget - budget.left());
   check_report(s.report, s.table.most_error());

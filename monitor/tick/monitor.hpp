@@ -17,6 +17,7 @@
 #include "monitor/inputs/source_numbers.hpp"
 #include "monitor/inputs/state_bytes.hpp"
 #include "monitor/inputs/tick_time.hpp"
+#include "monitor/interface/present_inputs.hpp"
 #include "monitor/interface/report.hpp"
 #include "monitor/interface/robots_seen.hpp"
 #include "monitor/schedule/swept_bounds.hpp"
@@ -36,20 +37,6 @@ struct InputAge {
   // The number of times that another source took over, and the owner before the last of them.
   std::uint32_t takeovers = 0, former_source = kNoSource;
   bool velocities_contradict = false;  // of a joint: its sent velocities contradict its positions
-};
-
-// The pose of a body at the last tick.
-struct PresentPose {
-  enum class State : std::uint8_t { kUsable, kUnknown, kLate, kContradicted, kAbsent };
-  State state = State::kUnknown;
-  Pose world_from_body = {};  // if it is usable
-};
-
-// The position of a joint variable at the last tick.
-struct PresentJoint {
-  PresentPose::State state = PresentPose::State::kUnknown;
-  double position = 0.0;  // rad or m, if it is usable
-  double velocity = 0.0;  // per second; NaN: not known
 };
 
 class SeenCloud;  // monitor/clouds

@@ -41,6 +41,7 @@ Monitor::State::State(const Scene& the_scene, const KnownHulls& known_hulls)
       contacts(the_scene),
       zones(the_scene, zone_levels, contacts),
       separations(the_scene, zone_levels),
+      stops(the_scene),
       differentiation(the_scene),
       hidden(the_scene) {
   const std::vector<BoundingSphere> spheres = bounding_spheres(scene.objects.size(), parts);
@@ -56,6 +57,7 @@ Monitor::State::State(const Scene& the_scene, const KnownHulls& known_hulls)
   report.contacts.assign(contacts.reports().begin(), contacts.reports().end());
   report.hidden.assign(hidden.reports().begin(), hidden.reports().end());
   separations.prepare(report);
+  stops.prepare(report);
   report.gradients = unknown_gradients(differentiation.rows());
 }
 

@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "config/scene/refresh_share.hpp"
+#include "monitor/ask/stops.hpp"
 #include "monitor/bodies/displacements.hpp"
 #include "monitor/bodies/ingest.hpp"
 #include "monitor/bodies/posed_part.hpp"
@@ -46,6 +47,7 @@ struct Monitor::State {
   Zones zones;                                  // conclude
   Conclusion conclusion;                        // conclude
   const Separations separations;
+  Stops stops;                      // stop
   Differentiation differentiation;  // differentiate
   Report report;                    // conclude, separate, differentiate and report
 

@@ -77,6 +77,8 @@ void check_report(const Report& report, double most_error) noexcept {
   if (!costly) return;
   check_zones(report.zones);
   check_separations(report.separated_pairs);
+  for (const RobotStop& stop : report.stops)
+    CLEARANCE_INVARIANT(stop.scaling >= 0.0 && stop.scaling <= 1.0 && stop.share <= 1.0);
 }
 
 }  // namespace clearance

@@ -151,6 +151,7 @@ Sample<clearance_msg_Separation> make_separation(const Scene& scene) {
   Sample<clearance_msg_Separation> sample;
   reserve_sequence(sample->zones, count.zones);
   reserve_sequence(sample->pairs, count.pairs);
+  reserve_sequence(sample->stops, count.stops);
   return sample;
 }
 
@@ -161,6 +162,7 @@ void to_wire(const Report& report, std::int64_t publish_ns,
   out.publish_ns = publish_ns;
   kToWire(Field{"pairs"}, report.separated_pairs, out.pairs);
   kToWire(Field{"zones"}, report.separated_zones, out.zones);
+  kToWire(Field{"stops"}, report.stops, out.stops);
 }
 
 void from_wire(const clearance_msg_Distances& message, Report& out) {
@@ -175,6 +177,7 @@ void from_wire(const clearance_msg_Separation& message, Report& out) {
   constexpr FromWire kFromWire;
   kFromWire(Field{"pairs"}, message.pairs, out.separated_pairs);
   kFromWire(Field{"zones"}, message.zones, out.separated_zones);
+  kFromWire(Field{"stops"}, message.stops, out.stops);
 }
 
 // Ids are places in the lists, as in the scene.
@@ -210,6 +213,9 @@ Sample<clearance_msg_Catalogue> make_catalogue(const Cell& cell, const SceneInFo
   for (std::uint32_t i = 0; i < scene.variables.size(); ++i) {
     sample->joints._buffer[sample->joints._length++] = {i, duplicate(scene.variables[i].name)};
   }
+  reserve_sequence(sample->robots, scene.robots.size());
+  for (const Robot& robot : scene.robots)
+    sample->robots._buffer[sample->robots._length++] = duplicate(robot.name);
   reserve_sequence(sample->contacts, scene.contacts.size());
   for (std::uint32_t i = 0; i < scene.contacts.size(); ++i) {
     fill(scene.contacts[i], i, sample->contacts._buffer[sample->contacts._length++]);

@@ -60,6 +60,7 @@ struct SeparationMessageFields {
     TickFields::for_each(visit, message...);
     visit(Field{"pairs"}, message.pairs...);
     visit(Field{"zones"}, message.zones...);
+    visit(Field{"stops"}, message.stops...);
   }
 };
 
@@ -132,6 +133,10 @@ struct FieldsOf<clearance_msg_PairSeparation> : PairSeparationFields {
 template <>
 struct FieldsOf<clearance_msg_ZoneSeparation> : ZoneSeparationFields {
   static constexpr std::string_view kType = "ZoneSeparation";
+};
+template <>
+struct FieldsOf<clearance_msg_RobotStop> : RobotStopFields {
+  static constexpr std::string_view kType = "RobotStop";
 };
 template <>
 struct FieldsOf<clearance_msg_Separation> : SeparationMessageFields {

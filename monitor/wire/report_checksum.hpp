@@ -126,6 +126,7 @@ inline void seal(clearance_msg_Distances& message) noexcept {
   add(Field{}, report.zones);
   add(Field{}, report.separated_pairs);
   add(Field{}, report.separated_zones);
+  add(Field{}, report.stops);
   add(Field{}, report.gradients);
   sum.add(state);
   return sum.value();

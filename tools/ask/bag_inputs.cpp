@@ -8,6 +8,7 @@
 #include "monitor/clouds/seen_cloud.hpp"
 #include "monitor/replay/offline_replay.hpp"
 #include "monitor/tick/monitor.hpp"
+#include "monitor/tick/read_inputs.hpp"
 
 namespace clearance {
 namespace {

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "config/cell/cell.hpp"
-#include "monitor/ask/present_inputs.hpp"
+#include "monitor/interface/present_inputs.hpp"
 #include "monitor/interface/question.hpp"
 #include "tools/ask/bag_motions.hpp"
 

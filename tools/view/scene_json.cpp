@@ -258,7 +258,9 @@ std::string scene_json(const Cell& cell, const std::map<std::size_t, Vec3>& colo
               {"blind_shells", blind_shells_json(scene, meshes)},
               {"zones", zones_json(scene, meshes)},
               {"contacts", contacts_json(scene)},
+              {"robots", json::array()},
               {"zone_causes", json::object()}};
+  for (const Robot& robot : scene.robots) all["robots"].push_back(robot.name);
   for (const PlacedBy by : {PlacedBy::kPoses, PlacedBy::kJointStates, PlacedBy::kFrames})
     all["zone_causes"][key(by)] = causes_json(by);
   all["meshes"] = meshes.take();

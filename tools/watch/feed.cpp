@@ -112,4 +112,10 @@ std::string Feed::zone_name(std::uint32_t zone) const {
   return known->zones._buffer[zone].name;
 }
 
+std::string Feed::robot_name(std::uint32_t robot) const {
+  const clearance_msg_Catalogue* const known = catalogue();
+  if (known == nullptr || robot >= known->robots._length) return fmt::format("robot {}", robot);
+  return known->robots._buffer[robot];
+}
+
 }  // namespace clearance::watch

@@ -87,6 +87,7 @@ class Feed {
   [[nodiscard]] std::string pair_name(const clearance_msg_PairDistance& pair) const;
   [[nodiscard]] std::string pair_name(std::uint32_t pair) const;
   [[nodiscard]] std::string zone_name(std::uint32_t zone) const;
+  [[nodiscard]] std::string robot_name(std::uint32_t robot) const;
   [[nodiscard]] std::string object_name(std::uint32_t object) const;
 
  private:

@@ -28,11 +28,29 @@ std::string text_of(const Feed& feed, const clearance_msg_ZoneSeparation& zone) 
                      validity == SeparationValidity::kAssumed ? ", by stated speeds" : "");
 }
 
+std::span<const clearance_msg_RobotStop> stops(const Feed& feed) {
+  const clearance_msg_Separation* const separation = feed.separation();
+  if (separation == nullptr) return {};
+  return {separation->stops._buffer, separation->stops._length};
+}
+
+std::string text_of(const Feed& feed, const clearance_msg_RobotStop& stop) {
+  const std::string name = feed.robot_name(stop.robot), pair = feed.pair_name(stop.pair);
+  if (static_cast<SeparationValidity>(stop.validity) == SeparationValidity::kUnknown)
+    return fmt::format("{} stops: not known, scaling 0, {}", name, pair);
+  if (stop.scaling < 1.0)
+    return fmt::format("{} stops: scaling {:.2f}, {:.0f} % of its motion is clear, {}", name,
+                       stop.scaling, 100.0 * stop.share, pair);
+  return fmt::format("{} stops: clear by {:.3f} m in {:.2f} s, {}", name, stop.clearance, stop.time,
+                     pair);
+}
+
 }  // namespace
 
 std::vector<std::string> separation_texts(const Feed& feed) {
   std::vector<std::string> texts;
   for (const auto& zone : separations(feed)) texts.push_back(text_of(feed, zone));
+  for (const auto& stop : stops(feed)) texts.push_back(text_of(feed, stop));
   return texts;
 }
 
@@ -41,6 +59,11 @@ void add_separation(std::vector<Line>& lines, const Feed& feed, std::size_t widt
     lines.emplace_back(width)
         .add("keep off  ", Style::kDim)
         .add(text_of(feed, zone), zone.scaling < 1.0 ? Style::kAlarm : Style::kGood);
+  }
+  for (const auto& stop : stops(feed)) {
+    lines.emplace_back(width)
+        .add("keep off  ", Style::kDim)
+        .add(text_of(feed, stop), stop.scaling < 1.0 ? Style::kAlarm : Style::kGood);
   }
 }
 

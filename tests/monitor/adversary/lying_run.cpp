@@ -12,6 +12,7 @@
 #include "monitor/inputs/scene_ids.hpp"
 #include "monitor/loop/tick_loop.hpp"
 #include "monitor/sensors/sensors.hpp"
+#include "monitor/tick/read_inputs.hpp"
 #include "tests/monitor/adversary/lying_commands.hpp"
 #include "tests/monitor/adversary/lying_partner.hpp"
 

@@ -7,6 +7,7 @@
 #include <limits>
 #include <string>
 
+#include "monitor/tick/read_inputs.hpp"
 #include "tests/monitor/tick/scara_cell.hpp"
 
 namespace clearance {

@@ -149,7 +149,7 @@ TEST_F(OfflineReplayTest, TableHasOneRowATickAndPair) {
     const std::string text = read_text(folder / "t.csv");
     EXPECT_EQ(1 + 5 * (all ? 3 : 2), std::ranges::count(text, '\n'));
     EXPECT_THAT(text, HasSubstr("tick,now_ns,object_a,object_b,status,distance,lower,upper,swept_"
-                                "lower,model_error,ax"));
+                                "lower,model_error,stop_lower,ax"));
     EXPECT_THAT(
         text,
         HasSubstr(",age_a_ns,age_b_ns,refresh_age_cycles,scene_revision,contact,contact_status,"

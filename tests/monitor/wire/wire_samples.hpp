@@ -44,6 +44,7 @@ inline void any_pair(std::mt19937_64& random, clearance_msg_PairDistance& pair) 
   pair.upper = any_double(random);
   pair.swept_lower = any_double(random);
   pair.model_error = any_double(random);
+  pair.stop_lower = any_double(random);
   pair.witness_a = any_vector(random);
   pair.witness_b = any_vector(random);
   pair.normal = any_vector(random);

@@ -95,7 +95,8 @@ json pair_distance(Cdr& cdr) {
   json out;
   for (const char* name : {"pair", "part_a", "part_b"}) out[name] = take<std::uint32_t>(cdr);
   out["status"] = take<std::uint8_t>(cdr);
-  for (const char* name : {"distance", "lower", "upper", "swept_lower", "model_error"})
+  for (const char* name :
+       {"distance", "lower", "upper", "swept_lower", "model_error", "stop_lower"})
     out[name] = number(cdr);
   for (const char* name : {"witness_a", "witness_b", "normal"}) out[name] = vector3(cdr);
   for (const char* name : {"closing_speed", "time_to_contact"}) out[name] = number(cdr);

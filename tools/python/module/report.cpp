@@ -28,6 +28,7 @@ void add_beside(const Beside& beside, const clearance_msg_Distances& message, Re
   if (beside.separation != nullptr) {
     report.separated_zones = value_of(beside.separation->zones);
     report.separated_pairs = value_of(beside.separation->pairs);
+    report.stops = value_of(beside.separation->stops);
   }
 }
 
@@ -113,7 +114,7 @@ struct FieldText {
 constexpr FieldText kTexts[] = {
     {"pairs", R"(Records of the published pairs.
 
-Fields: pair (id), part_a, part_b, status (PairStatus), distance, lower, upper, swept_lower, model_error,
+Fields: pair (id), part_a, part_b, status (PairStatus), distance, lower, upper, swept_lower, model_error, stop_lower,
 witness_a, witness_b, normal, closing_speed, time_to_contact, age_a_ns, age_b_ns, evaluated_cycle and
 refresh_age_cycles. m, m/s, s, ns, in the world. idl/FIELDS.md explains each.)"},
     {"minimum", "The record of the pair with the smallest upper bound; see minimum_known."},
@@ -181,6 +182,10 @@ None: not asked for (Reports(separation=True)), or the cell has no such zone.)")
           R"(Records of their pairs: zone, pair, validity, clearance, human_speed, robot_speed,
 human_term, robot_term, stopping_term, protective_distance, remaining, speed_limit, scaling,
 age_human_ns, age_robot_ns. m, m/s, ns, as in ISO/TS 15066; None like `separated_zones`.)")
+      .def_readonly(
+          "stops", &Report::stops,
+          R"(Records of the robots with `stopping`: robot (id), validity, scaling (0 to 1), clearance (m),
+pair, share (0 to 1), time (s). None like `separated_zones`.)")
       .def_property_readonly(
           "joints", [](const Report& r) { return r.all_names(&Names::joints); },
           "Names of the columns of `gradients`; None while names have not come.")

@@ -46,7 +46,7 @@ struct Report {
   client::PartnerState partner;
   std::shared_ptr<const Names> names;  // null: the catalogue of its scene has not come
   py::object gradients = py::none(), drifts = py::none();  // arrays, or None
-  py::object separated_zones = py::none(), separated_pairs = py::none();
+  py::object separated_zones = py::none(), separated_pairs = py::none(), stops = py::none();
 
   // The names of all zones or joints by id, or None.
   [[nodiscard]] py::object all_names(const py::list Names::*list) const {

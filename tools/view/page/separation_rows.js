@@ -1,6 +1,6 @@
 // Speed and separation monitoring, a row per zone that asks for it. It has the excess of the
 // distance between a person and the robot over the protective separation distance S_p, and the
-// robot's allowed speed.
+// robot's allowed speed. Below these, a row per robot that states how it stops.
 import { mm, put } from "./format.js";
 
 const VALIDITY = ["not known", "by stated speeds", "measured", "absent"];
@@ -17,8 +17,15 @@ function figuresOf({ zone, pair, validity, remaining, speed_limit, scaling }, pa
   return [[mm(clearance, 0), mm(protective_distance, 0), mm(remaining, 0), scaling.toFixed(2), metresPerSecond(speed_limit)], scaling < 1 ? "alarm" : ""];
 }
 
+// The same of a robot that states how it stops: its clearance until it stands, and the scaling.
+function figuresOfStop({ validity, clearance, scaling }) {
+  if (validity === 0) return [["?", "-", "?", "0.00", "-"], "lost"];
+  return [[mm(clearance, 0), "-", mm(clearance, 0), scaling.toFixed(2), "-"], scaling < 1 ? "alarm" : ""];
+}
+
 export class SeparationRows {
-  // `choose(pair)` is called for a clicked row. Hidden when no zone of the cell has a separation.
+  // `choose(pair)` is called for a clicked row. Hidden when no zone of the cell has a separation and no robot states how
+  // it stops.
   constructor(choose) {
     this.choose = choose;
     this.section = document.getElementById("separation");
@@ -28,17 +35,19 @@ export class SeparationRows {
   draw({ separation, scene, pairs }, frozen, nowMs) {
     if (nowMs - this.drawnMs < AGAIN_MS) return;
     this.drawnMs = nowMs;
-    this.section.hidden = !separation?.zones.length;
+    this.section.hidden = !(separation?.zones.length || separation?.stops?.length);
     if (this.section.hidden) return;
     this.section.classList.toggle("old", frozen);
-    separation.zones.forEach((zone, i) => {
+    const putRow = (i, name, { pair, validity }, [figures, kind]) => {
       const row = this.body.rows[i] ?? this.body.insertRow();
-      const [figures, kind] = figuresOf(zone, separation.pairs);
       while (row.cells.length < 1 + FIGURES) row.insertCell();
       row.className = kind;
-      row.title = `${pairs[zone.pair].name}: ${VALIDITY[zone.validity]}`;
-      row.onclick = () => this.choose(zone.pair, false);
-      [`${scene.zones[zone.zone].name}: ${pairs[zone.pair].name}`, ...figures].forEach((text, cell) => put(row.cells[cell], text));
-    });
+      row.title = `${pairs[pair].name}: ${VALIDITY[validity]}`;
+      row.onclick = () => this.choose(pair, false);
+      [`${name}: ${pairs[pair].name}`, ...figures].forEach((text, cell) => put(row.cells[cell], text));
+    };
+    const { zones, stops = [] } = separation;
+    zones.forEach((zone, i) => putRow(i, scene.zones[zone.zone].name, zone, figuresOf(zone, separation.pairs)));
+    stops.forEach((stop, i) => putRow(zones.length + i, `${scene.robots?.[stop.robot] ?? "robot"} stops`, stop, figuresOfStop(stop)));
   }
 }

@@ -1,4 +1,4 @@
-#include "monitor/ask/present_inputs.hpp"
+#include "monitor/tick/read_inputs.hpp"
 
 #include <algorithm>
 

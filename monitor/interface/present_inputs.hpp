@@ -1,13 +1,27 @@
-// The inputs that a monitor knows at one tick, which a question need not state.
+// The inputs that a tick knows, which a question need not state.
 #pragma once
 
 #include <cstdint>
 #include <vector>
 
-#include "config/scene/scene.hpp"
-#include "monitor/tick/monitor.hpp"
+#include "core/pose.hpp"
+#include "monitor/interface/report.hpp"
 
 namespace clearance {
+
+// The pose of a body at the last tick.
+struct PresentPose {
+  enum class State : std::uint8_t { kUsable, kUnknown, kLate, kContradicted, kAbsent };
+  State state = State::kUnknown;
+  Pose world_from_body = {};  // if it is usable
+};
+
+// The position of a joint variable at the last tick.
+struct PresentJoint {
+  PresentPose::State state = PresentPose::State::kUnknown;
+  double position = 0.0;  // rad or m, if it is usable
+  double velocity = 0.0;  // per second; NaN: not known
+};
 
 struct PresentObject {
   std::uint32_t object = 0;  // index into Scene::objects
@@ -23,12 +37,5 @@ struct InputState {
   std::vector<PresentObject> objects = {};  // those that are neither fixed nor links of robots
   std::vector<ContactReport> contacts = {};  // for each of contact_pairs()
 };
-
-// The state before any tick: room for what a monitor knows of this scene.
-[[nodiscard]] InputState room_for_inputs(const Scene& scene);
-
-// Reads all but `cycle` and `now_ns`, between two ticks. The room is that of the monitor's scene.
-// Allocates nothing.
-void read_inputs(const Monitor& monitor, InputState& state) noexcept;
 
 }  // namespace clearance

@@ -1,0 +1,220 @@
+#include "monitor/ask/stopping_joints.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "monitor/bodies/directed_rounding.hpp"
+#include "monitor/inputs/elapsed.hpp"
+
+namespace clearance {
+
+// At a time since the brakes act, it has come at least `least` and at most `most` far.
+struct StoppingJoints::Braking {
+  double distance = 0.0, time = 0.0, speed = 0.0;
+
+  [[nodiscard]] double least(double t) const noexcept {
+    return time > 0.0 ? distance * std::min(1.0, t / time) : distance;
+  }
+  [[nodiscard]] double most(double t) const noexcept { return std::min(distance, speed * t); }
+  [[nodiscard]] double middle(double t) const noexcept { return 0.5 * (least(t) + most(t)); }
+};
+
+// The joint's speed does not grow while it brakes, so what it has covered is concave in time.
+StoppingJoints::Braking StoppingJoints::braking_of(const JointStop& stop, double speed) noexcept {
+  const double distance = stop.distance(speed), time = stop.time(speed);
+  return {distance, time, time > 0.0 ? std::max(speed, distance / time) : kInfinity};
+}
+
+// No farther is the joint from the straight lines between its middles at these times.
+double StoppingJoints::deviation_of(const Braking& braking, double step) noexcept {
+  double most = 0.0;
+  for (std::size_t k = 0; k < kBraking; ++k) {
+    const double from = static_cast<double>(k) * step, to = from + step;
+    const double at_from = braking.middle(from), at_to = braking.middle(to);
+    // Both bounds are straight between these times.
+    for (const double t : {from, to, braking.time, braking.distance / braking.speed}) {
+      if (!(t >= from && t <= to)) continue;
+      const double line = step > 0.0 ? at_from + (at_to - at_from) * ((t - from) / step) : at_to;
+      most = std::max({most, braking.most(t) - line, line - braking.least(t)});
+    }
+  }
+  return rounded_up(most);
+}
+
+StoppingJoints::StoppingJoints(const Scene& scene, std::uint32_t robot, JointTrajectory& motion)
+    : stops_(scene.robots[robot].stopping), robot_(robot), period_(1.0 / scene.rate_hz) {
+  const Robot& of = scene.robots[robot];
+  for (std::size_t i = 0; i < of.joints.size(); ++i) {
+    const RobotJoint& joint = of.joints[i];
+    if (variables_of(joint.type) != 1) continue;
+    const JointVariable& variable = scene.variables[joint.variable];
+    if (variable.name != joint.name) continue;  // it mimics another
+    Joint added{
+        .variable = joint.variable, .stop = &stops_.joints[i], .full_speed = variable.max_speed};
+    if (!stops_.max_accelerations.empty()) added.acceleration = stops_.max_accelerations[i];
+    if (joint.type == JointType::kPrismatic) {
+      added.lower = variable.lower;
+      added.upper = variable.upper;
+    }
+    joints_.push_back(added);
+    motion.joints.push_back(variable.name);
+  }
+  const std::size_t rows = stops_.keeps_path ? 2 : 2 + kBraking;
+  for (std::size_t row = 0; row < rows; ++row)
+    motion.times.push_back(kDuration * static_cast<double>(row) / static_cast<double>(rows - 1));
+  motion.positions.resize(rows * joints_.size());
+  motion.deviations.resize(joints_.size());
+}
+
+const StoppingJoints::Joint* StoppingJoints::find(std::uint32_t variable) const noexcept {
+  const auto found = std::ranges::find(joints_, variable, &Joint::variable);
+  return found == joints_.end() ? nullptr : &*found;
+}
+
+// A robot that is late has to stop: its present velocity is not known.
+void StoppingJoints::read(const Inputs& inputs) noexcept {
+  is_usable_ = !inputs.robots.is_denied(robot_);
+  is_assumed_ = may_turn_ = false;
+  age_ = 0.0;
+  for (Joint& joint : joints_) read(inputs, joint);
+  for (Joint& joint : joints_) {
+    const bool gains = joint.acceleration < kInfinity && !joint.any_direction;
+    joint.gained = gains ? rounded_up(joint.acceleration * reaction()) : 0.0;
+    may_turn_ = may_turn_ || joint.gained > 0.0 || joint.any_direction;
+  }
+}
+
+void StoppingJoints::read(const Inputs& inputs, Joint& joint) noexcept {
+  const TrackedVariable& state = inputs.robots.variables()[joint.variable];
+  joint.any_direction = !state.velocity_known;
+  joint.position = state.position;
+  joint.velocity = state.velocity_known ? state.velocity : 0.0;
+  joint.speed = state.velocity_known ? std::abs(state.velocity) : joint.full_speed;
+  if (state.velocities_contradict && joint.velocity != 0.0) {
+    joint.speed = std::max(joint.speed, state.sent_speed);
+    joint.velocity = std::copysign(joint.speed, joint.velocity);
+  }
+  const bool is_known = state.input.has_value && !state.input.late && !state.input.contradicted;
+  joint.age = is_known ? rounded_up(seconds(state.input.age_ns(inputs.time.now_ns))) : 0.0;
+  age_ = std::max(age_, joint.age);
+  is_assumed_ = is_assumed_ || joint.any_direction;
+  is_usable_ = is_usable_ && is_known && joint.speed < kInfinity;
+}
+
+// From the oldest position in use until the brakes act, at the latest, s.
+double StoppingJoints::reaction() const noexcept {
+  return rounded_up(stops_.reaction + period_ + age_);
+}
+
+double StoppingJoints::longest_time(double scaling) const noexcept {
+  double longest = 0.0;
+  for (const Joint& joint : joints_)
+    longest =
+        std::max(longest, joint.stop->time(rounded_up(scaling * (joint.speed + joint.gained))));
+  return longest;
+}
+
+double StoppingJoints::time() const noexcept {
+  return rounded_up(reaction() - age_ + longest_time(1.0));
+}
+
+// The longest distance / speed of all joints, s: in proportion, all of them brake for as long.
+double StoppingJoints::in_proportion(double scaling) const noexcept {
+  double longest = 0.0;
+  for (const Joint& joint : joints_) {
+    const double speed = scaling * joint.speed;
+    if (speed > 0.0) longest = std::max(longest, joint.stop->distance(rounded_up(speed)) / speed);
+  }
+  return rounded_up(longest);
+}
+
+// The same for all speeds that the joints may have by then.
+double StoppingJoints::at_most_in_proportion(double scaling) const noexcept {
+  double longest = in_proportion(scaling);
+  if (!may_turn_) return longest;
+  for (const Joint& joint : joints_)
+    longest =
+        std::max(longest, joint.stop->longest(rounded_up(scaling * (joint.speed + joint.gained))));
+  return longest;
+}
+
+void StoppingJoints::state(StatedJoint& out, std::uint32_t variable) const noexcept {
+  const Joint& joint = *find(variable);
+  const double faster = rounded_up(joint.speed + joint.gained);
+  double braking = joint.stop->distance(faster);
+  if (stops_.keeps_path) {
+    braking = faster * at_most_in_proportion(1.0);
+    const double longest = longest_time(1.0);
+    if (joint.gained > 0.0) braking += 0.5 * joint.acceleration * longest * longest;
+  }
+  const double covered = rounded_up(faster * reaction() + braking);
+  const bool either = joint.any_direction || joint.gained > 0.0;
+  out.position = joint.position;
+  if (!either) out.position += std::copysign(0.5 * covered, joint.velocity);
+  out.most = either ? covered : rounded_up(0.5 * covered);
+}
+
+// First the joints go on as they do. Then they brake: in proportion, if the path is kept, so that
+// they stay on a line; else each by itself.
+void StoppingJoints::write_motion(double scaling, JointTrajectory& motion) const noexcept {
+  const std::size_t rows = motion.times.size(), joints = joints_.size();
+  const double on_line = in_proportion(scaling), at_most = at_most_in_proportion(scaling);
+  const double longest = longest_time(scaling), step = longest / static_cast<double>(kBraking);
+  for (std::size_t j = 0; j < joints; ++j) {
+    const Joint& joint = joints_[j];
+    const double speed = rounded_up(scaling * joint.speed);
+    const double faster = rounded_up(scaling * (joint.speed + joint.gained));
+    const double before = joint.speed * reaction();  // until the brakes act
+    const double side = joint.velocity < 0.0 ? -1.0 : 1.0;
+    double deviation = joint.speed * (age_ - joint.age) + 0.5 * joint.gained * reaction();
+    const auto at = [&](std::size_t row) -> double& { return motion.positions[row * joints + j]; };
+    at(0) = joint.position;
+    if (joint.any_direction) {
+      deviation += before + (stops_.keeps_path ? faster * at_most : joint.stop->distance(faster));
+      for (std::size_t row = 1; row < rows; ++row) at(row) = joint.position;
+    } else if (stops_.keeps_path) {
+      at(1) = joint.position + side * (before + speed * on_line);
+      deviation += scaling * joint.gained * at_most + speed * (at_most - on_line);
+      if (joint.gained > 0.0) deviation += 0.5 * joint.acceleration * longest * longest;
+    } else {
+      const Braking braking = braking_of(*joint.stop, speed);
+      for (std::size_t k = 0; k <= kBraking; ++k)
+        at(1 + k) =
+            joint.position + side * (before + braking.middle(static_cast<double>(k) * step));
+      deviation += deviation_of(braking, step);
+      if (joint.gained > 0.0) {
+        const double back = rounded_up(scaling * std::max(0.0, joint.gained - joint.speed));
+        deviation += std::max(joint.stop->distance(faster) - braking.distance,
+                              braking.distance + joint.stop->distance(back));
+      }
+    }
+    // What slides stops at its limits at the latest, and there it leaves the lines.
+    double beyond = 0.0;
+    for (std::size_t row = 1; row < rows; ++row) {
+      const double within = std::clamp(at(row), std::min(joint.lower, joint.position),
+                                       std::max(joint.upper, joint.position));
+      beyond = std::max(beyond, std::abs(at(row) - within));
+      at(row) = within;
+    }
+    deviation += beyond;
+    motion.deviations[j] = deviation > 0.0 ? rounded_up(deviation) : 0.0;
+  }
+}
+
+// As a time at the present speed, s.
+double StoppingJoints::length_of_line(double scaling) const noexcept {
+  return reaction() + scaling * in_proportion(scaling);
+}
+
+double StoppingJoints::scaling_within(double share) const noexcept {
+  const double clear = rounded_down(share * length_of_line(1.0));
+  if (length_of_line(0.0) >= clear) return 0.0;
+  double least = 0.0, most = 1.0;
+  for (int i = 0; i < 20; ++i) {
+    const double middle = 0.5 * (least + most);
+    (length_of_line(middle) < clear ? least : most) = middle;
+  }
+  return least;
+}
+
+}  // namespace clearance

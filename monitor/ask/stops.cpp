@@ -1,0 +1,263 @@
+#include "monitor/ask/stops.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "monitor/ask/motion_search.hpp"
+#include "monitor/bodies/directed_rounding.hpp"
+#include "monitor/inputs/elapsed.hpp"
+#include "monitor/pairs/kept_near.hpp"
+
+namespace clearance {
+namespace {
+
+constexpr double kTolerance = 4e-3;  // m
+constexpr double kRounding = 1e-9;   // m: of the places of joints until they stand
+// Pairs that stay certainly farther than their margin by this are not examined more closely, m.
+constexpr double kFarBeyondMargin = 0.1;
+constexpr double kShare = 1e-3;           // of the motion: where it is not clear any more
+constexpr std::uint32_t kMostWork = 400;  // queries and placements of a robot in a tick
+constexpr std::uint32_t kHalvings = 4;    // of a share of the speed
+
+}  // namespace
+
+Stops::Stops(const Scene& scene) : scene_(scene), stopping_of_robot_(scene.robots.size(), kNone) {
+  for (std::uint32_t r = 0; r < scene.robots.size(); ++r) {
+    if (!scene.robots[r].stopping.is_stated()) continue;
+    stopping_of_robot_[r] = static_cast<std::uint32_t>(robots_.size());
+    robots_.emplace_back(scene, r);
+  }
+  if (robots_.empty()) return;
+  search_ = std::make_unique<MotionSearch>(scene);
+  robot_of_object_.assign(scene.objects.size(), kNone);
+  for (std::uint32_t r = 0; r < scene.robots.size(); ++r) {
+    for (const RobotLink& link : scene.robots[r].links)
+      if (link.object != RobotLink::kNoObject) robot_of_object_[link.object] = r;
+  }
+  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+    if (!scene.objects[i].fixed && robot_of_object_[i] == kNone) tracked_.push_back(i);
+  }
+  kept_near_ = kept_nearer(scene, 0.0);
+  for (StoppingRobot& robot : robots_) {
+    add_pairs(robot);
+    add_others(robot);
+  }
+}
+Stops::~Stops() = default;
+
+Stops::StoppingRobot::StoppingRobot(const Scene& scene, std::uint32_t of)
+    : robot(of), joints(scene, of, question.motion) {
+  question.tolerance = kTolerance;
+  question.instant = kShare;
+  question.contacts.emplace();  // a contact in force has no margin here
+}
+
+// The robot's own links, and those of what stands on it.
+void Stops::add_pairs(StoppingRobot& robot) const {
+  std::vector<bool> is_moved(scene_.objects.size(), false);
+  const auto root = [&](std::uint32_t r) {
+    while (r != robot.robot && scene_.robots[r].base.kind == RobotBase::Kind::kLink)
+      r = scene_.robots[r].base.robot;
+    return r;
+  };
+  for (std::uint32_t r = 0; r < scene_.robots.size(); ++r) {
+    if (root(r) != robot.robot) continue;
+    for (const RobotLink& link : scene_.robots[r].links) {
+      if (link.object != RobotLink::kNoObject && !scene_.objects[link.object].fixed)
+        is_moved[link.object] = true;
+    }
+  }
+  std::vector<double> stated(scene_.pairs.size(), -kInfinity);
+  for (const Zone& zone : scene_.zones) {
+    if (!zone.stop_margin) continue;
+    for (const std::uint32_t pair : zone.pairs) {
+      const ObjectPair& of = scene_.pairs[pair];
+      const double both = scene_.objects[of.first].margin + scene_.objects[of.second].margin;
+      stated[pair] = std::max(stated[pair], rounded_up(*zone.stop_margin + both));
+    }
+  }
+  robot.margins.assign(scene_.pairs.size(), -kInfinity);
+  std::uint32_t published = 0;
+  double largest = 0.0;
+  for (std::uint32_t p = 0; p < scene_.pairs.size(); ++p) {
+    const ObjectPair& pair = scene_.pairs[p];
+    const std::uint32_t place = pair.publish ? published++ : kNone;
+    if (!is_moved[pair.first] && !is_moved[pair.second]) continue;
+    const bool is_near = std::ranges::binary_search(kept_near_, p);
+    robot.pairs.push_back({.pair = p,
+                           .other = is_moved[pair.first] ? pair.second : pair.first,
+                           .published = place,
+                           .margin = stated[p] > -kInfinity ? stated[p]
+                                     : is_near              ? -kInfinity
+                                                            : 0.0});
+    largest = std::max(largest, robot.pairs.back().margin);
+    for (const std::uint32_t object : {pair.first, pair.second})
+      if (robot_of_object_[object] != kNone) robot.beside.push_back(robot_of_object_[object]);
+  }
+  std::ranges::sort(robot.beside);
+  robot.beside.erase(std::ranges::unique(robot.beside).begin(), robot.beside.end());
+  robot.question.far_enough = largest + kFarBeyondMargin;
+  robot.question.margins_by_pair = robot.margins;
+}
+
+// Room for what write() states in each tick, in an order that stays.
+void Stops::add_others(StoppingRobot& robot) const {
+  for (std::uint32_t v = 0; v < scene_.variables.size(); ++v)
+    if (!robot.joints.has(v)) robot.question.joints.push_back({.name = scene_.variables[v].name});
+  for (const std::uint32_t i : tracked_) {
+    const Object& object = scene_.objects[i];
+    if (object.is_seen()) {
+      robot.question.seen.emplace_back().sensor = object.name;
+    } else {
+      robot.question.poses.emplace_back().object = object.name;
+    }
+  }
+}
+
+void Stops::prepare(Report& report) const {
+  for (const StoppingRobot& robot : robots_) {
+    report.stops.push_back({.robot = robot.robot,
+                            .clearance = -kInfinity,
+                            .pair = robot.pairs.empty() ? 0 : robot.pairs.front().pair,
+                            .time = kNan});
+  }
+}
+
+void Stops::write(const Inputs& inputs, const CloudPairs* clouds, const Contacts& contacts,
+                  Report& report) noexcept {
+  for (StoppingRobot& robot : robots_) {
+    robot.joints.read(inputs);
+    for (const WatchedPair& pair : robot.pairs) {
+      if (pair.published == kNone) continue;
+      PairReport& out = report.pairs[pair.published];
+      out.stop_lower = out.status == PairStatus::kAbsent ? kNan : -kInfinity;
+    }
+  }
+  for (std::size_t i = 0; i < robots_.size(); ++i) {
+    StoppingRobot& robot = robots_[i];
+    RobotStop& out = report.stops[i];
+    out = {.robot = robot.robot,
+           .clearance = -kInfinity,
+           .pair = robot.pairs.empty() ? 0 : robot.pairs.front().pair,
+           .time = robot.joints.is_usable() ? robot.joints.time() : kNan};
+    if (!robot.joints.is_usable() || !knows_pairs(inputs, contacts, robot)) continue;
+    state_others(inputs, clouds, out.time, robot);
+    write(inputs, robot, report, out);
+  }
+}
+
+// Absent objects limit nothing, and neither do contacts that are allowed now.
+bool Stops::knows_pairs(const Inputs& inputs, const Contacts& contacts,
+                        StoppingRobot& robot) const noexcept {
+  bool all_known = true;
+  for (const WatchedPair& pair : robot.pairs) {
+    const TrackedObject& other = inputs.objects[pair.other];
+    const ObjectPair& of = scene_.pairs[pair.pair];
+    const bool is_absent = inputs.objects[of.first].absent || inputs.objects[of.second].absent;
+    const bool is_allowed = contacts.least_allowed(pair.pair) < kInfinity;
+    double& margin = robot.margins[pair.pair];
+    margin = is_absent || is_allowed ? -kInfinity : pair.margin;
+    all_known = all_known && (margin == -kInfinity || other.known());
+  }
+  return all_known;
+}
+
+void Stops::state_others(const Inputs& inputs, const CloudPairs* clouds, double time,
+                         StoppingRobot& robot) const noexcept {
+  const auto age = [&](const InputRecord& input) {
+    return rounded_up(seconds(std::max<std::int64_t>(0, input.age_ns(inputs.time.now_ns))) + time);
+  };
+  std::size_t next = 0;
+  for (std::uint32_t v = 0; v < scene_.variables.size(); ++v) {
+    if (robot.joints.has(v)) continue;
+    StatedJoint& stated = robot.question.joints[next++];
+    const TrackedVariable& state = inputs.robots.variables()[v];
+    stated.position = state.input.has_value ? state.position : 0.0;
+    stated.age = state.input.has_value ? age(state.input) : time;
+    stated.most = kInfinity;
+    const std::uint32_t stopping = stopping_of_robot_[scene_.variables[v].robot];
+    if (!std::ranges::binary_search(robot.beside, scene_.variables[v].robot)) {
+      stated.most = 0.0;  // no pair of this robot has one of its links
+      continue;
+    }
+    // Another robot that stops as well.
+    if (stopping != kNone && robots_[stopping].joints.is_usable() &&
+        robots_[stopping].joints.has(v))
+      robots_[stopping].joints.state(stated, v);
+  }
+  std::size_t pose = 0, frame = 0;
+  for (const std::uint32_t i : tracked_) {
+    const TrackedObject& object = inputs.objects[i];
+    const bool is_known = object.input.has_value && !object.absent;
+    if (scene_.objects[i].is_seen()) {
+      SeenFrame& stated = robot.question.seen[frame++];
+      const CloudPairs::Content& content = clouds->content(scene_.objects[i].sensor);
+      stated.is_known = is_known && content.cloud != nullptr;
+      if (!stated.is_known) continue;
+      stated.cloud = {std::shared_ptr<const SeenCloud>(), content.cloud};
+      stated.world_from_sensor = object.pose;
+      stated.pose_error = content.pose_error;
+      stated.age = age(object.input);
+    } else {
+      StatedPose& stated = robot.question.poses[pose++];
+      stated.is_known = is_known;
+      stated.world_from_object = object.pose;
+      stated.age = age(object.input);
+    }
+  }
+}
+
+void Stops::write(const Inputs& inputs, StoppingRobot& robot, Report& report,
+                  RobotStop& out) noexcept {
+  Question& question = robot.question;
+  question.only_margins = question.only_verdicts = false;
+  question.work_limit = std::min(scene_.budget, kMostWork);
+  robot.joints.write_motion(1.0, question.motion);
+  if (search_->ask(question, robot.answer)) return;
+  out.validity =
+      robot.joints.is_assumed() ? SeparationValidity::kAssumed : SeparationValidity::kMeasured;
+  out.clearance = kInfinity;
+  for (const WatchedPair& pair : robot.pairs) {
+    const double lower = std::max(0.0, robot.answer.lower_by_pair[pair.pair] - kRounding);
+    if (pair.published != kNone && inputs.objects[pair.other].known()) {
+      PairReport& of = report.pairs[pair.published];
+      of.stop_lower = std::max(of.stop_lower, std::min(lower, std::max(0.0, of.lower)));
+    }
+    const double margin = robot.margins[pair.pair];
+    if (margin == -kInfinity) continue;
+    const double left = margin > 0.0 ? rounded_down(lower - margin) : lower;
+    if (left < out.clearance) {
+      out.clearance = left;
+      out.pair = pair.pair;
+    }
+  }
+  const MarginAnswer& decided = robot.answer.margins.front();
+  out.scaling = out.share = 1.0;
+  if (decided.verdict == Verdict::kFree) return;
+  for (const WatchedPair& pair : robot.pairs) {
+    const ObjectPair& of = scene_.pairs[pair.pair];
+    if (std::minmax(of.first, of.second) == std::minmax(decided.first, decided.second))
+      out.pair = pair.pair;
+  }
+  out.share = std::clamp(decided.above_until / StoppingJoints::kDuration, 0.0, 1.0);
+  out.scaling = largest_scaling(out.share, robot);
+}
+
+// On one line, a lower speed ends on a part of it. Else a share of the speed has to be proven.
+double Stops::largest_scaling(double clear_share, StoppingRobot& robot) noexcept {
+  if (robot.joints.is_on_line()) return robot.joints.scaling_within(clear_share);
+  double least = 0.0, most = 1.0;
+  Question& question = robot.question;
+  question.only_margins = question.only_verdicts = true;
+  question.work_limit = std::min(scene_.budget, kMostWork) / kHalvings;
+  for (std::uint32_t i = 0; i < kHalvings; ++i) {
+    const double middle = 0.5 * (least + most);
+    robot.joints.write_motion(middle, question.motion);
+    const bool is_free = !search_->ask(question, robot.answer) &&
+                         robot.answer.margins.front().verdict == Verdict::kFree;
+    (is_free ? least : most) = middle;
+  }
+  return least;
+}
+
+}  // namespace clearance

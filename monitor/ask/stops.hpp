@@ -1,0 +1,75 @@
+// Stage 'stop' of a tick: where robots that state how they stop may be until they stand, if they
+// are told to stop now. The question is the same as that of a client about a motion, so that bounds
+// and proofs are those of MotionSearch. STOPS.md says what is assumed.
+#pragma once
+
+#include <cstdint>
+#include <memory>
+#include <span>
+#include <vector>
+
+#include "config/scene/scene.hpp"
+#include "monitor/ask/stopping_joints.hpp"
+#include "monitor/bodies/ingest.hpp"
+#include "monitor/interface/question.hpp"
+#include "monitor/interface/report.hpp"
+#include "monitor/pairs/cloud_pairs.hpp"
+#include "monitor/zones/contacts.hpp"
+
+namespace clearance {
+
+class MotionSearch;
+
+class Stops {
+ public:
+  // The scene must outlive it. Allocates all memory; none if no robot states how it stops.
+  explicit Stops(const Scene& scene);
+  ~Stops();
+
+  // Gives the report's list its size; nothing is known.
+  void prepare(Report& report) const;
+
+  // `report.pairs` are of this tick. `clouds`: null if the scene has no sensors.
+  void write(const Inputs& inputs, const CloudPairs* clouds, const Contacts& contacts,
+             Report& report) noexcept;
+
+ private:
+  struct WatchedPair {
+    std::uint32_t pair = 0;       // index into Scene::pairs
+    std::uint32_t other = 0;      // object that may be late or unknown; Scene::objects
+    std::uint32_t published = 0;  // index into Report::pairs, or kNone
+    double margin = 0.0;          // m; -infinity: the robot's build keeps it nearer
+  };
+  struct StoppingRobot {
+    StoppingRobot(const Scene& scene, std::uint32_t of);
+
+    std::uint32_t robot;
+    Question question;
+    Answer answer;
+    StoppingJoints joints;
+    std::vector<WatchedPair> pairs;
+    std::vector<std::uint32_t> beside;  // robots with a link in one of them, ascending
+    std::vector<double> margins;        // by Scene::pairs, in this tick
+  };
+  static constexpr std::uint32_t kNone = ~0u;
+
+  void add_pairs(StoppingRobot& robot) const;
+  void add_others(StoppingRobot& robot) const;
+
+  void state_others(const Inputs& inputs, const CloudPairs* clouds, double time,
+                    StoppingRobot& robot) const noexcept;
+  [[nodiscard]] bool knows_pairs(const Inputs& inputs, const Contacts& contacts,
+                                 StoppingRobot& robot) const noexcept;
+  [[nodiscard]] double largest_scaling(double clear_share, StoppingRobot& robot) noexcept;
+  void write(const Inputs& inputs, StoppingRobot& robot, Report& report, RobotStop& out) noexcept;
+
+  const Scene& scene_;
+  std::vector<StoppingRobot> robots_;
+  std::vector<std::uint32_t> stopping_of_robot_;  // by Scene::robots; kNone: states none
+  std::vector<std::uint32_t> robot_of_object_;    // kNone: no link
+  std::vector<std::uint32_t> tracked_;            // objects that are neither fixed nor links
+  std::vector<std::uint32_t> kept_near_;          // pairs that a robot's build keeps in contact
+  std::unique_ptr<MotionSearch> search_;
+};
+
+}  // namespace clearance
