@@ -30,8 +30,10 @@ TEST(SwingingJoint, StandsWithinItsTableOnceTheReactionIsOver) {
                                 .acceleration = random.uniform(2.0, 8.0),
                                 .reaction = reaction,
                                 .stop = JointStop::by_table({{full, distance, time}})});
-    joint.command(full);
-    for (double t = random.uniform(0.3, 3.0); t > 0.0; t -= kStep) joint.advance(kStep);
+    for (double t = random.uniform(0.3, 3.0); t > 0.0; t -= kStep) {
+      joint.command(full);
+      joint.advance(kStep);
+    }
     joint.command(0.0);
     for (double t = 0.0; t < reaction - kStep; t += kStep) joint.advance(kStep);
     const double from = joint.position(), speed = std::abs(joint.velocity());
@@ -67,6 +69,25 @@ TEST(SwingingJoint, SwingsBetweenItsPlacesAsFastAsItMay) {
   EXPECT_EQ(strokes(0.0), 0u);
 }
 
+TEST(SwingingJoint, StopsWhenItIsToldNothingForAsLongAsItsReaction) {
+  stops::SwingingJoint joint({.from = -1.0,
+                              .to = 1.0,
+                              .full_speed = 1.0,
+                              .acceleration = 5.0,
+                              .reaction = 0.1,
+                              .stop = JointStop::by_time(0.2)});
+  for (int i = 0; i < 500; ++i) {
+    joint.command(1.0);
+    joint.advance(1e-3);
+  }
+  for (int i = 0; i < 98; ++i) joint.advance(1e-3);
+  EXPECT_EQ(joint.velocity(), 1.0) << "the last command has just begun to act";
+  for (int i = 0; i < 210; ++i) joint.advance(1e-3);
+  EXPECT_EQ(joint.velocity(), 0.0);
+  for (int i = 0; i < 1000; ++i) joint.advance(1e-3);
+  EXPECT_EQ(joint.velocity(), 0.0) << "until it is told something";
+}
+
 struct Obeying {
   std::size_t strokes = 0;
   double at_full_speed = -1.0;        // percent
@@ -87,8 +108,8 @@ Obeying obeying(const std::string& output, const std::string& name) {
   return outcome;
 }
 
-// The person passes once. On a busy machine the arm's time goes more slowly, and all answers are
-// older.
+// The person passes once. On a busy machine answers are older, and the arm stops where none comes
+// within its reaction.
 TEST(StoppingArm, KeepsTheMarginAndIsHeldBackLeastByItsStops) {
   const std::string cell = test::places::sources() + "/config/cells/stops.yaml";
   constexpr double kMargin = 0.05;  // m: in this cell

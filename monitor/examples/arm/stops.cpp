@@ -18,8 +18,7 @@ namespace clearance::stops {
 namespace {
 
 constexpr std::chrono::milliseconds kPatience(500);
-// A step advances the run's time by at most this, however long the machine stalled.
-constexpr std::int64_t kLongestStepNs = 5'000'000;
+constexpr double kStep = 5e-3;    // s, at most: of the machine and of the true distance
 constexpr double kProgram = 0.6;  // speed of its motion, of the joint's limit
 constexpr double kSlow = 0.25;    // of that, in the zone `slow`
 // Both places of the first joint, rad, and a stretched arm.
@@ -157,29 +156,32 @@ RunResult run(const Cell& cell, client::Connection& connection, const RunOptions
 
   double t_s = 0.0, full_s = 0.0;
   const std::int64_t patience_ns = 10 * std::chrono::nanoseconds(kPatience).count();
+  const auto advance = [&](double seconds) {
+    swing.advance(seconds);
+    t_s += seconds;
+    full_s += swing.is_at_full_speed() ? seconds : 0.0;
+    positions[0] = swing.position();
+    velocities[0] = swing.velocity();
+    const double found = truth.distance_at(t_s, positions);
+    result.least_distance_m = std::min(result.least_distance_m, found);
+    if (velocities[0] != 0.0)
+      result.least_while_moving_m = std::min(result.least_while_moving_m, found);
+  };
   std::int64_t now_ns = client::now_ns(), answered_ns = now_ns;
   while (t_s < options.seconds && go_on()) {
     const std::int64_t stamp_ns = world.send(t_s, positions, velocities);
     const bool answered = answers.wait_for(stamp_ns);
     const std::int64_t before_ns = now_ns;
     now_ns = client::now_ns();
+    if (answered) answered_ns = now_ns;
+    if (now_ns - answered_ns > patience_ns) return result;
     // What was moved between two runs is not known at first.
-    if (!answered || (t_s == 0.0 && !answers.is_known())) {
-      if (now_ns - answered_ns > patience_ns) return result;
-      continue;
-    }
-    answered_ns = now_ns;
-    const double found = truth.distance_at(t_s, positions);
-    result.least_distance_m = std::min(result.least_distance_m, found);
-    if (velocities[0] != 0.0)
-      result.least_while_moving_m = std::min(result.least_while_moving_m, found);
-    swing.command(answers.allowed(options.obeyed, std::abs(velocities[0]), machine.full_speed));
-    const double step_s = 1e-9 * static_cast<double>(std::min(now_ns - before_ns, kLongestStepNs));
-    swing.advance(step_s);
-    positions[0] = swing.position();
-    velocities[0] = swing.velocity();
-    t_s += step_s;
-    full_s += swing.is_at_full_speed() ? step_s : 0.0;
+    if (t_s == 0.0 && !(answered && answers.is_known())) continue;
+    if (answered)
+      swing.command(answers.allowed(options.obeyed, std::abs(velocities[0]), machine.full_speed));
+    for (double left_s = 1e-9 * static_cast<double>(now_ns - before_ns); left_s > 0.0;
+         left_s -= kStep)
+      advance(std::min(left_s, kStep));
   }
   result.strokes = swing.strokes();
   result.at_full_speed = t_s > 0.0 ? full_s / t_s : 0.0;

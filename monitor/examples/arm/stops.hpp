@@ -19,7 +19,7 @@ enum class Obeyed : std::uint8_t {
 
 struct RunOptions {
   Obeyed obeyed = Obeyed::kStops;
-  double seconds = 20.0;  // duration of the motion; a run takes longer if the machine stalls
+  double seconds = 20.0;  // duration of the motion
 };
 
 struct RunResult {
@@ -30,9 +30,9 @@ struct RunResult {
   double least_distance_m = 1e9, least_while_moving_m = 1e9;
 };
 
-// The person is a function of the run's own time, which stops while the daemon does not answer:
-// every run has the same one. Throws std::invalid_argument if the cell has not one robot that
-// states `stopping` and `acceleration`, or not one mover.
+// The person is a function of the run's own time: every run has the same one. Throws
+// std::invalid_argument if the cell has not one robot that states `stopping` and `acceleration`, or
+// not one mover.
 [[nodiscard]] RunResult run(const Cell& cell, client::Connection& connection,
                             const RunOptions& options, const std::function<bool()>& go_on);
 

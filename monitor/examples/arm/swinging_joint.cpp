@@ -15,6 +15,7 @@ double SwingingJoint::left() const noexcept {
 
 void SwingingJoint::command(double speed) {
   commands_.push_back({time_ + options_.reaction, speed});
+  told_at_ = time_;
 }
 
 void SwingingJoint::brake(double seconds) {
@@ -29,11 +30,13 @@ void SwingingJoint::brake(double seconds) {
 }
 
 void SwingingJoint::advance(double seconds) {
+  const bool is_silent = time_ - told_at_ > options_.reaction;
   time_ += seconds;
   while (!commands_.empty() && commands_.front().acts_at <= time_) {
     most_ = commands_.front().speed;
     commands_.pop_front();
   }
+  if (is_silent) most_ = 0.0;
   const double before = velocity_;
   if (std::abs(velocity_) > most_) {
     brake(seconds);

@@ -1,5 +1,6 @@
 // A simulated machine: one joint that swings between two places. It takes a reaction until a
-// command acts, and brakes as the cell says that it does.
+// command acts, and brakes as the cell says that it does. Without a command for as long as the
+// reaction, it stops.
 #pragma once
 
 #include <cstddef>
@@ -43,6 +44,7 @@ class SwingingJoint {
   SwingingJointOptions options_;
   std::deque<Command> commands_;
   double time_ = 0.0, position_, velocity_ = 0.0;
+  double told_at_ = 0.0;       // the last command
   double most_ = 0.0;          // speed that is allowed now
   double deceleration_ = 0.0;  // of the brakes; 0: they do not act
   double side_;                // of the place where it goes: 1 or -1
