@@ -166,6 +166,31 @@ def test_separations_belong_to_the_tick_of_their_report(run_daemon, tmp_path):
         assert pair["remaining"] == pytest.approx(pair["clearance"] - pair["protective_distance"], abs=1e-9)
 
 
+def test_stops_belong_to_the_tick_of_their_report(run_daemon, planar_file):
+    stopping = planar_file.read_text().replace("urdf: planar.urdf", "urdf: planar.urdf, stopping: {reaction_ms: 50, time_ms: 200}")
+    planar_file.write_text(stopping.replace("max_speed: 100", "max_speed: 1"))
+    connection = run_daemon(planar_file).connection()
+    with clearance.Reports(connection, separation=True) as reports, clearance.JointWriter(
+        "python joints", ARM, connection
+    ) as arm, clearance.PoseWriter("python poses", ["ball"], connection) as ball:
+        assert arm.wait_heard(LIMIT_S) and ball.wait_heard(LIMIT_S)
+        report = eventually(lambda: reports.next(0.05), lambda r: r.stops is not None)
+        assert report.stops[0]["validity"] == 0 and report.stops[0]["scaling"] == 0.0
+
+        def sent_and_heard():
+            arm.write([0.0, np.pi / 2], [0.0, 0.0])
+            ball.write([[1.0, 1.0, 1.0, 0, 0, 0, 1]], [[0] * 6])
+            return reports.next(0.05)
+
+        report = eventually(sent_and_heard, lambda r: r.stops is not None and r.stops[0]["validity"] == 2)
+        [stop] = report.stops
+        assert stop["robot"] == 0 and stop["scaling"] == 1.0 and stop["share"] == 1.0
+        # The arm stands, and the ball comes nearer by 1 m/s until it would stand.
+        row = report[("lower", "ball")]
+        assert 0 < row["stop_lower"] < row["lower"]
+        assert np.isnan(report[("ball", "wall")]["stop_lower"])
+
+
 def test_commands_change_the_scene_and_refusals_say_why(daemon):
     connection = daemon.connection()
     with clearance.Commands("python tests", connection) as commands, clearance.Reports(

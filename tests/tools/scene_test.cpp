@@ -335,7 +335,7 @@ TEST_F(SceneProgram, PrintsAndPlotsHowFarEachJointGoesOn) {
   EXPECT_EQ(run({"stops", file("cell.yaml")}), 0) << output_;
   EXPECT_EQ(output_,
             "chain: category 1, brakes act after 40 ms, the path is kept\n"
-            "  joint                    from, per s    goes on for    in, ms\n"
+            "  joint                     from, per s    goes on for    in, ms\n"
             "  j                           57.30 deg      8.000 deg       300\n"
             "  j                          114.59 deg     16.000 deg       300\n"
             "  k                           75.63 deg     15.126 deg       200\n"

@@ -6,8 +6,7 @@
 #include <numbers>
 #include <span>
 
-#include "config/cell/simulation.hpp"
-#include "monitor/wire/convert.hpp"
+#include "monitor/examples/arm/world.hpp"
 
 namespace clearance::avoid {
 namespace {
@@ -42,47 +41,6 @@ class Path {
 
  private:
   Vec3 middle_;
-};
-
-// Sends the arm and the obstacles of one run under one stamp.
-class World {
- public:
-  World(const Cell& cell, client::Connection& connection)
-      : cell_(cell),
-        joints_(connection, "avoid arm", names_of(cell.scene)),
-        poses_(connection, "avoid obstacles") {}
-
-  // Returns the stamp.
-  std::int64_t send(double t_s, const std::vector<double>& positions,
-                    const std::vector<double>& velocities) {
-    const std::int64_t stamp_ns = client::now_ns();
-    poses_at(cell_.simulation, t_s, obstacles_);
-    sent_.resize(obstacles_.size());
-    for (std::size_t i = 0; i < obstacles_.size(); ++i) {
-      to_wire({.object = obstacles_[i].object,
-               .stamp_ns = stamp_ns,
-               .world_from_object = obstacles_[i].world_from_object,
-               .twist = obstacles_[i].twist,
-               .has_twist = true},
-              sent_[i]);
-    }
-    poses_.write(sent_, cell_.scene.revision);
-    joints_.write(positions, velocities, stamp_ns);
-    return stamp_ns;
-  }
-
- private:
-  static std::vector<std::string> names_of(const Scene& scene) {
-    std::vector<std::string> names;
-    for (const JointVariable& variable : scene.variables) names.push_back(variable.name);
-    return names;
-  }
-
-  const Cell& cell_;
-  client::JointWriter joints_;
-  client::PoseWriter poses_;
-  std::vector<PoseAt> obstacles_;
-  std::vector<clearance_msg_ObjectPose> sent_;
 };
 
 // The least distance of the arm from the obstacles.
@@ -131,7 +89,7 @@ RunResult run(const Cell& cell, client::Connection& connection, const RunOptions
   const Controller controller(scene, arm, positions, options.controller);
   arm.place(positions);
   const Path path(arm.end_point());
-  World world(cell, connection);
+  World world(cell, connection, "avoid arm", "avoid obstacles");
   client::Gradients gradients(connection, {.old_after = kPatience, .depth = 4});
   Nearest nearest(scene, arm, result);
 

@@ -1,7 +1,8 @@
 // An example of a program beside the daemon: an arm that keeps away from obstacles by the daemon's
-// gradients, tells it what it holds, or asks it before each motion.
+// gradients, tells it what it holds, asks it before each motion, or stops for a person.
 #include <cstdio>
 #include <string>
+#include <utility>
 
 #include "monitor/app/cell_arguments.hpp"
 #include "monitor/app/log.hpp"
@@ -15,6 +16,7 @@
 #include "monitor/examples/arm/ask.hpp"
 #include "monitor/examples/arm/avoid.hpp"
 #include "monitor/examples/arm/pick.hpp"
+#include "monitor/examples/arm/stops.hpp"
 
 namespace clearance {
 namespace {
@@ -28,9 +30,10 @@ constexpr const char* kFooter = R"(Exit status:
   5  stopped, or the daemon did not answer
   6  the daemon refused a command
 
-Examples, beside clearanced config/cells/avoid.yaml --partition lab, or pick.yaml:
+Examples, beside clearanced config/cells/avoid.yaml --partition lab, or pick.yaml, stops.yaml:
   build/bin/example_arm avoid config/cells/avoid.yaml --partition lab
   build/bin/example_arm pick config/cells/pick.yaml --partition lab
+  build/bin/example_arm stops config/cells/stops.yaml --partition lab
   build/bin/example_arm ask config/cells/pick.yaml --partition lab    # clearanced --questions "example arm")";
 
 struct Arguments {
@@ -38,6 +41,7 @@ struct Arguments {
   DdsArguments dds;
   avoid::RunOptions avoid;
   pick::RunOptions pick;
+  stops::RunOptions stops;
   double speed = 1.0;  // of the jogs that are asked about
 };
 
@@ -109,6 +113,34 @@ int pick_twice(client::Connection& connection, Arguments& arguments, StopSignal&
   return kOk;
 }
 
+void print_row(const char* name, const stops::RunResult& result) {
+  print(stdout, "{:<12} {:>7} {:>10.0f} %  {:>14.3f}  {:>9.3f}\n", name, result.strokes,
+        100.0 * result.at_full_speed, result.least_while_moving_m, result.least_distance_m);
+  std::fflush(stdout);
+}
+
+// The arm works beside the same person three times.
+int stop_thrice(const Cell& cell, client::Connection& connection, Arguments& arguments,
+                StopSignal& signal) {
+  print(stdout, "{:<12} {:>7} {:>12}  {:>14}  {:>9}\n", "obeys", "strokes", "full speed",
+        "nearest moving", "nearest m");
+  const std::pair<const char*, stops::Obeyed> kinds[] = {
+      {"zones", stops::Obeyed::kZones},
+      {"S_p", stops::Obeyed::kSeparation},
+      {"stops", stops::Obeyed::kStops},
+  };
+  for (const auto& [name, obeyed] : kinds) {
+    arguments.stops.obeyed = obeyed;
+    const stops::RunResult result =
+        stops::run(cell, connection, arguments.stops, [&signal] { return !signal.wait(0); });
+    if (!result.heard)
+      return no_answer(connection,
+                       "reports came; does clearanced run, with config/cells/stops.yaml,");
+    print_row(name, result);
+  }
+  return kOk;
+}
+
 const char* name_of(jog::Decision decision) {
   switch (decision) {
     case jog::Decision::kMade:
@@ -148,8 +180,10 @@ int ask_each(client::Connection& connection, const Arguments& arguments, StopSig
 
 int run(int argc, char** argv, StopSignal& signal) {
   Arguments arguments;
-  CommandLine line{"An arm beside the daemon that avoids obstacles, carries a part, or asks first.",
-                   kFooter};
+  CommandLine line{
+      "An arm beside the daemon that avoids obstacles, carries a part, asks first, "
+      "or stops for a person.",
+      kFooter};
   line.subcommands = {
       kind(arguments, "avoid",
            "Follows a path past moving obstacles, without and with keeping away from them",
@@ -164,6 +198,10 @@ int run(int argc, char** argv, StopSignal& signal) {
       kind(arguments, "ask", "Jogs past a wall, and asks the daemon before each jog",
            {{"--speed", &arguments.speed, "Speed of the jogs; 1: about 10 s in all",
              number_in(0.1, 5.0), shown()}}),
+      kind(arguments, "stops",
+           "Works beside a person: by distance zones, by S_p, and by how it stops",
+           {{"--seconds", &arguments.stops.seconds, "Length of each run", number_in(2.0, 3600.0),
+             shown()}}),
   };
   if (const auto done = parse(line, argc, argv)) return *done;
   start_log("example_arm", "error");
@@ -173,6 +211,7 @@ int run(int argc, char** argv, StopSignal& signal) {
   client::Connection connection(arguments.dds.resolve(*cell), cell->topics);
   if (line.chosen == "avoid") return avoid_twice(*cell, connection, arguments, signal);
   if (line.chosen == "pick") return pick_twice(connection, arguments, signal);
+  if (line.chosen == "stops") return stop_thrice(*cell, connection, arguments, signal);
   return ask_each(connection, arguments, signal);
 }
 
