@@ -61,7 +61,7 @@ struct PairReport {
   // m: a lower bound of the distance until a robot stands that is told to stop now
   // (RobotStop), rounded to no worse than 0. -infinity if that is not known; NaN if neither object
   // moves with a robot that states stops.
-  double stop_lower = 0.0;
+  double stop_lower = std::numeric_limits<double>::quiet_NaN();
   // The closest points, world. Of objects that overlap: the point of each that lies deepest in the
   // other along the normal, as in DistanceResult.
   Vec3 witness_a = Vec3::Zero(), witness_b = Vec3::Zero();

@@ -266,7 +266,6 @@ void write_pair(std::uint32_t pair, const PairBounds& bounds, const TickView& vi
   const TrackedObject& b = view.objects[table.entries[pair].object_b];
   if (!is_known(bounds.status)) report = unknown_report();
   report.pair = pair;
-  report.stop_lower = kNan;  // unless the stage 'stop' writes it
   report.age_a_ns = a.input.age_ns(view.now_ns);
   report.age_b_ns = b.input.age_ns(view.now_ns);
   report.refresh_age_cycles = view.cycle - table.entries[pair].refreshed_cycle;
