@@ -19,11 +19,13 @@ class ObeyingRobot {
  public:
   static constexpr double kStep = 1e-3;  // s: a tick
 
-  // `age`: of the states that reports read, in ticks.
-  ObeyingRobot(const Scene& scene, std::uint32_t robot, std::size_t age, std::uint64_t seed)
+  // `age`: of the states that reports read, in ticks. `late`: of its commands, beyond what is
+  // stated.
+  ObeyingRobot(const Scene& scene, std::uint32_t robot, std::size_t age, std::size_t late,
+               std::uint64_t seed)
       : scene_(scene), robot_(scene.robots[robot]), age_(age), random_(seed) {
     const RobotStops& stops = robot_.stopping;
-    reaction_ = static_cast<std::size_t>(std::lround(stops.reaction / kStep));
+    reaction_ = static_cast<std::size_t>(std::lround(stops.reaction / kStep)) + late;
     for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
       if (!moves(scene, robot_, j)) continue;
       Joint joint{.of = &scene.variables[robot_.joints[j].variable], .stop = &stops.joints[j]};
