@@ -1,4 +1,4 @@
-"""The tutorial: its commands are run one after another, as a reader pastes them, and print what the page shows.
+"""The tutorials: their commands are run one after another, as a reader pastes them, and print what the pages show.
 
 usage: tutorial_test.py BUILD
 """
@@ -14,13 +14,16 @@ import unittest
 sys.dont_write_bytecode = True
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
-PAGE = ROOT / "tools/TUTORIAL.md"
 NUMBER = re.compile(r"-?\d+(\.\d+)?")
 
 
-def blocks():
+def text_of(page):
+    return (ROOT / "tools" / page).read_text(encoding="utf-8")
+
+
+def blocks(page):
     """The page's blocks of code, each as (language, text)."""
-    return re.findall(r"^```(\w*)\n(.*?)^```$", PAGE.read_text(encoding="utf-8"), re.DOTALL | re.MULTILINE)
+    return re.findall(r"^```(\w*)\n(.*?)^```$", text_of(page), re.DOTALL | re.MULTILINE)
 
 
 def for_this_machine(text):
@@ -40,6 +43,13 @@ def pattern(line):
 
 class Tutorial(unittest.TestCase):
     def test_its_commands_run_and_print_what_it_shows(self):
+        self.assertEqual(self.follow("TUTORIAL.md"), (5, 7))
+
+    def test_the_one_of_stops_does_as_well(self):
+        self.assertEqual(self.follow("STOPS_TUTORIAL.md"), (5, 8))
+
+    def follow(self, page):
+        """Runs the page's commands; returns how many blocks have run, and how many lines were compared."""
         with tempfile.TemporaryDirectory() as home:
             share = pathlib.Path(home) / "clearance/share/clearance"
             share.mkdir(parents=True)
@@ -51,7 +61,7 @@ class Tutorial(unittest.TestCase):
                 return subprocess.run(["bash", "-euo", "pipefail", "-c", for_this_machine(text)], cwd=folder, env=environment,
                                       capture_output=True, text=True, timeout=120)
 
-            for language, text in blocks():
+            for language, text in blocks(page):
                 if language == "sh":
                     done = run(text)
                     if "--record" in text:
@@ -72,10 +82,10 @@ class Tutorial(unittest.TestCase):
                     for line in text.splitlines():
                         self.assertRegex(output, pattern(line))
                         compared += 1
-            self.assertEqual((ran, compared), (5, 7))
+            return ran, compared
 
     def test_the_thresholds_that_it_works_out_are_those_of_its_formula(self):
-        text = PAGE.read_text(encoding="utf-8")
+        text = text_of("TUTORIAL.md")
         v, a, delay = 0.5, 5.0, 0.010 + 0.001 + 0.019
         stop = v * delay + v * v / (2 * a)
         slow = stop + v * v / a

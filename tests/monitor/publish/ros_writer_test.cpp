@@ -104,6 +104,23 @@ TEST_F(RosWriterTest, TheScalingOfZonesIsNothingWhileAPairOverlapsOrIsUnknown) {
   EXPECT_TRUE(comes(0.0, [&] { hand_over(monitor.tick({}, now += test::kTick)); }));
 }
 
+// A controller takes one number: the zone of this cell is distance alone.
+TEST_F(RosWriterTest, TheScalingIsTheLeastOfAllStops) {
+  RosReader<Float64> scaling(client, kRosFloat64, "rt/told/clearance/speed_scaling");
+  const auto comes = [&](double first, double second) {
+    return eventually([&] {
+      const PoseSample sample = test::sample(0, test::at(0.0, 0, 0), now += test::kTick);
+      Report report = monitor.tick({&sample, 1}, now);
+      report.stops = {{.robot = 0, .scaling = first}, {.robot = 1, .scaling = second}};
+      hand_over(report);
+      return scaling.take() && scaling.last().data == std::min(first, second);
+    });
+  };
+  EXPECT_TRUE(comes(0.75, 0.25));
+  EXPECT_TRUE(comes(0.5, 1.0));
+  EXPECT_TRUE(comes(0.0, 1.0));
+}
+
 TEST_F(RosWriterTest, TheSceneIsThereForALateReader) {
   tick(0.0);
   RosReader<moveit_msgs_msg_dds__PlanningScene_> scene_reader(
