@@ -161,16 +161,20 @@ void Stops::write(const Inputs& inputs, const CloudPairs* clouds, const Contacts
            .clearance = -kInfinity,
            .pair = robot.pairs.empty() ? 0 : robot.pairs.front().pair,
            .time = robot.joints.is_usable() ? robot.joints.time() : kNan};
-    if (!robot.joints.is_usable() || !knows_pairs(inputs, contacts, robot)) continue;
+    if (!robot.joints.is_usable()) continue;
+    if (const auto unknown = unknown_pair(inputs, contacts, robot)) {
+      out.pair = *unknown;
+      continue;
+    }
     state_others(inputs, clouds, out.time, robot);
     write(inputs, robot, report, out);
   }
 }
 
 // Absent objects limit nothing, and neither do contacts that are allowed now.
-bool Stops::knows_pairs(const Inputs& inputs, const Contacts& contacts,
-                        StoppingRobot& robot) const noexcept {
-  bool all_known = true;
+std::optional<std::uint32_t> Stops::unknown_pair(const Inputs& inputs, const Contacts& contacts,
+                                                 StoppingRobot& robot) const noexcept {
+  std::optional<std::uint32_t> unknown;
   for (const WatchedPair& pair : robot.pairs) {
     const TrackedObject& other = inputs.objects[pair.other];
     const ObjectPair& of = scene_.pairs[pair.pair];
@@ -178,9 +182,9 @@ bool Stops::knows_pairs(const Inputs& inputs, const Contacts& contacts,
     const bool is_allowed = contacts.least_allowed(pair.pair) < kInfinity;
     double& margin = robot.margins[pair.pair];
     margin = is_absent || is_allowed ? -kInfinity : pair.margin;
-    all_known = all_known && (margin == -kInfinity || other.known());
+    if (!unknown && margin > -kInfinity && !other.known()) unknown = pair.pair;
   }
-  return all_known;
+  return unknown;
 }
 
 void Stops::state_others(const Inputs& inputs, const CloudPairs* clouds, double time,

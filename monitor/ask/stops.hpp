@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -59,8 +60,10 @@ class Stops {
 
   void state_others(const Inputs& inputs, const CloudPairs* clouds, double time,
                     StoppingRobot& robot) const noexcept;
-  [[nodiscard]] bool knows_pairs(const Inputs& inputs, const Contacts& contacts,
-                                 StoppingRobot& robot) const noexcept;
+  // Writes the margins of this tick. Returns the first pair with one that is not known.
+  [[nodiscard]] std::optional<std::uint32_t> unknown_pair(const Inputs& inputs,
+                                                          const Contacts& contacts,
+                                                          StoppingRobot& robot) const noexcept;
   [[nodiscard]] double largest_scaling(double clear_share, StoppingRobot& robot) noexcept;
   void write(const Inputs& inputs, StoppingRobot& robot, Report& report, RobotStop& out) noexcept;
 

@@ -173,7 +173,7 @@ struct RobotStop {
   // that a pair of the robot depends on is not known, or the robot is late; `scaling` is 0.
   SeparationValidity validity = SeparationValidity::kUnknown;
   // The largest share of its present speed, 0 to 1, from which it stops clear of everything by the
-  // stated margins. 1 also if it stands; 0 if no share is certified.
+  // stated margins. 1 also if it stands beyond them; 0 if no share is certified.
   double scaling = 0.0;
   // The least of (PairReport::stop_lower - margin) over its pairs, m; -infinity: not known.
   double clearance = 0.0;
