@@ -56,7 +56,7 @@ class JointStopReader {
                    const std::vector<StoppedJoint*>& joints);
   Rates urdf_rates(const YamlNode& node, const Rate& rate,
                    const std::vector<StoppedJoint*>& joints);
-  // The joints of which no entry of `joints` and no row says the same.
+  // Returns the joints that have no statement of this kind, by an entry of `joints` or by a row.
   template <class Has>
   std::vector<StoppedJoint*> others(Has has) {
     std::vector<StoppedJoint*> found;
@@ -84,7 +84,7 @@ std::optional<double> JointStopReader::read_rate(const YamlNode& node, const Sto
   return std::nullopt;
 }
 
-// By URDF 1.2; nothing for a joint of which it states none.
+// Reads the rates of URDF 1.2. A joint without one gets none.
 JointStopReader::Rates JointStopReader::urdf_rates(const YamlNode& node, const Rate& rate,
                                                    const std::vector<StoppedJoint*>& joints) {
   Rates rates;

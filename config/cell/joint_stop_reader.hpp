@@ -14,8 +14,8 @@ struct StopsOfJoints {
   const YamlNode* acceleration = nullptr;
 };
 
-// What is said of one joint replaces the stop that it has from a table. What is said of all joints
-// counts for those without a stop.
+// Reads the stops of joints. That of a single joint replaces its stop by a table; one for all
+// joints counts for those that have none.
 void read_joint_stops(const StopsOfJoints& stated, const Quantities& quantities,
                       StoppedJoints& joints);
 

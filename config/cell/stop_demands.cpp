@@ -8,7 +8,7 @@
 namespace clearance {
 namespace {
 
-// What joints move has no speed of its own; the root of all others does.
+// Returns, by object, whether joints move it: then its speed follows from theirs.
 std::vector<bool> moved_by_joints(std::span<const Robot> robots, std::size_t objects) {
   std::vector<bool> found(objects, false), robot_on_object(robots.size(), false);
   for (std::size_t i = 0; i < robots.size(); ++i) {

@@ -1,4 +1,4 @@
-// What a cell has to state, besides, where a robot has `stopping` or a zone `stops`.
+// Refuses cells that state too little for the stops of their robots and zones.
 #pragma once
 
 #include <cstdint>
@@ -31,7 +31,7 @@ class StoppingRobots {
 void refuse_unbounded_motion(const StoppingRobots& stopping, const RobotList& robots,
                              const ObjectList& list, Diagnostics& diagnostics);
 
-// Reports each zone with `stops` of which no pair has a body that a robot with `stopping` moves.
+// Reports each zone with `stops` whose pairs have no body that a robot with `stopping` moves.
 // `node` is the list of the zones.
 void refuse_zones_without_stops(const YamlNode& node, const StoppingRobots& stopping,
                                 std::span<const Zone> zones, std::span<const ObjectPair> pairs,

@@ -15,10 +15,10 @@ struct StopConditions {
   std::optional<double> load = {}, extension = {};
 };
 
-// Of the rows of one joint, those of the category, at the next printed load and extension from the
-// stated ones on, and at all lower ones: tables are not monotone. Returns no rows if none is of the
-// category. It is a mistake if no step is as high as a stated one, and if a combination of the
-// steps of load, extension and speed has no row.
+// Returns the rows of one joint that count: those of the category, at the next printed load and
+// extension from the stated ones on, and at all lower ones, since tables are not monotone. There
+// are none if no row is of the category. It is a mistake if no step is as high as a stated one, and
+// if a combination of the steps of load, extension and speed has no row.
 [[nodiscard]] std::variant<std::vector<StopRow>, StopMistake> counted_rows(
     std::vector<StopRow> of_joint, const StopConditions& conditions);
 

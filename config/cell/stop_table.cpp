@@ -87,7 +87,7 @@ class CellsReader {
   std::string mistake_;
 };
 
-// Of each field of a line its column, or what is wrong with the line.
+// Returns the column of each field of the first line, or what is wrong with that line.
 std::variant<std::vector<StopColumn>, std::string> header(std::string_view line) {
   std::vector<StopColumn> columns;
   for (const std::string_view name : split(line)) {

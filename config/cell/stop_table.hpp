@@ -11,7 +11,7 @@
 
 namespace clearance {
 
-// What is printed for one joint at one load, extension and speed, which are shares of the largest.
+// A printed stop of one joint. Load, extension and speed are shares of the largest ones.
 struct StopRow {
   std::string joint;  // its name in the URDF without the prefix; or its number, from 1 on
   int category = -1;  // -1: the table does not say

@@ -9,8 +9,9 @@
 namespace clearance {
 namespace {
 
-// From its speed, a joint that brakes goes at most as far as without brakes, and hardly less than
-// this share of it: makers' tables have 0.2 to 0.5. Noise and rounding are in the greater one.
+// A joint that brakes covers at most the distance that it would cover without brakes, and hardly
+// less than the first share of it: makers' tables have 0.2 to 0.5. The second one has room for
+// noise.
 constexpr double kLeastShare = 0.05, kMostShare = 1.05;
 // Between its full speed and standstill, s. No brake acts faster, and no drive is slower.
 constexpr double kLeastStop = 0.01, kMostRamp = 10.0;

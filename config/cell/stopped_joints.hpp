@@ -24,8 +24,8 @@ struct StoppedJoint {
   [[nodiscard]] const char* unit() const noexcept { return turns ? "rad" : "m"; }
 };
 
-// From the root on: all that move and do not mimic another, without the base on tf. Of joints with
-// several positions, the first one's name is `refused`, and the list is empty.
+// The list begins at the root. It has all joints that move and mimic no other one, without a base
+// on tf. If a joint has several positions, the list is empty, and `refused` is that joint's name.
 struct StoppedJoints {
   std::vector<StoppedJoint> all = {};
   std::string refused = {};

@@ -82,7 +82,7 @@ inline Scene drawn_scene(std::uint64_t seed) {
   return scene;
 }
 
-// A link that its joints move: a base that is fixed stands anyhow.
+// Fixed links never move, so no stop concerns them.
 inline bool is_moved_link(const Scene& scene, const Robot& robot, std::uint32_t object) {
   return !scene.objects[object].fixed &&
          std::ranges::find(robot.links, object, &RobotLink::object) != robot.links.end();

@@ -120,8 +120,8 @@ class SwingingArm {
   }
 };
 
-// A box of which the camera sees one face has no depth. So its box is within a cell of the truth on
-// the inside in two directions at least, and nowhere farther out.
+// The camera may see one face of a box alone, so that the depth is open. In two directions at least
+// the printed box is within a cell of the truth on the inside, and in none is it farther out.
 TEST(UnknownPayloads, AreNamedWithABoxWithinACellOfWhatIsSeenOfThem) {
   for (int seed = 1; seed <= kSeeds; ++seed) {
     SCOPED_TRACE(seed);
@@ -208,8 +208,8 @@ TEST(UnknownPayloads, AreNotNamedOfAnObstacleBesideAMovingArm) {
   }
 }
 
-// A body and two arms, one of which reaches towards the hand. The person walks as the hand first
-// moves, so it stays beside it for a while, 0.2 m away and more.
+// The person has a body and two arms, and one arm reaches towards the hand. The person walks as the
+// hand first moves, and so stays beside it for a while, 0.2 m away and more.
 TEST(UnknownPayloads, AreNotNamedOfAPersonWhoWalksBesideTheHand) {
   for (int seed = 1; seed <= kSeeds; ++seed) {
     SwingingArm arm(seed);
