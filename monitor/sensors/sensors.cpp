@@ -53,6 +53,10 @@ Sensors::Sensors(const Cell& cell, Sensors& before, const SourceNumbers& numbers
           a.most_points == b.most_points && a.least_interval_ns == b.least_interval_ns) {
         state->stream = old->stream;
         state->pairing = old->pairing;
+        state->own_elements = old->own_elements;
+        // Without it, the first picture of a changed scene might be a torn one.
+        if (a.least_depth == b.least_depth && a.greatest_depth == b.greatest_depth)
+          state->seen_share = old->seen_share;
         keep_map(*old, *state);
       }
     }

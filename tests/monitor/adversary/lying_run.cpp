@@ -67,8 +67,8 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
   std::int64_t monotonic_ns() noexcept override { return kSecond + now_; }
   std::int64_t steady_ns() noexcept override { return kSecond + now_; }
   void sleep_until(std::int64_t monotonic_ns) noexcept override {
-    if (now_ >= 0 && random_.chance(kAsks)) ask();
     follow();
+    if (now_ >= 0 && random_.chance(kAsks)) ask();
     while (kSecond + now_ < monotonic_ns) {
       senders_.send(now_ += kMs);
       has_built_ = false;

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "tests/monitor/sensors/small_camera.hpp"
@@ -132,6 +134,21 @@ TEST_F(LivePictures, ThatLoseAPartAtOnceAreTornUntilItIsBackOrTenSecondsHavePass
     if (is_used) break;
   }
   EXPECT_TRUE(uses(torn())) << "the scene is like that";
+}
+
+// A command changes the scene: the pictures before it are no other camera's.
+TEST_F(LivePictures, AreComparedWithThoseBeforeTheCellChanged) {
+  begin("");
+  ASSERT_TRUE(uses(wall(1.0)));
+  ImageText torn = wall(1.0);
+  for (std::size_t i = kPixels / 2; i < kPixels; ++i) put(torn, i, 0);
+  ASSERT_FALSE(uses(torn));
+  const auto before = std::move(sensors);
+  sensors = std::make_unique<Sensors>(cell, *before, SourceNumbers(cell.scene));
+  ImageText next = wall(1.0);
+  for (std::size_t i = kPixels / 2; i < kPixels; ++i) put(next, i, 0);
+  EXPECT_FALSE(uses(next)) << "it is as torn as before";
+  EXPECT_TRUE(uses(wall(1.0)));
 }
 
 // Fewer pixels from frame to frame, as when the camera turns towards the sky.
