@@ -120,6 +120,15 @@ bool is_told_of_seen(const Fault& fault, std::int64_t t, Told& told) {
   return std::ranges::count(kAll, fault.lie) != 0;
 }
 
+// Whoever takes over a ball that comes back from its absence cannot be contradicted.
+bool is_unheard(const std::vector<Fault>& mix) {
+  const auto is = [](Lie lie, Channel channel) {
+    return [=](const Fault& fault) { return fault.lie == lie && fault.channel == channel; };
+  };
+  return std::ranges::any_of(mix, is(Lie::kAbsent, Channel::kCommands)) &&
+         std::ranges::any_of(mix, is(Lie::kTakeover, Channel::kBall2));
+}
+
 }  // namespace
 
 const char* name(Lie lie) {
@@ -201,7 +210,9 @@ std::vector<Fault> drawn_mix(std::uint64_t seed) {
     const auto channel = static_cast<Channel>(random.next() % kChannels);
     const bool is_free =
         std::ranges::none_of(mix, [&](const Fault& fault) { return fault.channel == channel; });
-    if (is_free && strikes(lie, channel)) mix.push_back(drawn(lie, channel, random));
+    if (!is_free || !strikes(lie, channel)) continue;
+    mix.push_back(drawn(lie, channel, random));
+    if (is_unheard(mix)) mix.pop_back();
   }
   return mix;
 }

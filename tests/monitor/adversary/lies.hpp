@@ -9,6 +9,7 @@
 //   not, either: its pose in the world changes with the frames above.
 // - A source falls silent, and another one claims what the object can have reached meanwhile.
 // - A source leaps, and stays there until the object can have got there.
+// - An object comes back from its absence, and the source that is heard first claims any place.
 // - A value is wrong by less than the object moves within its age limit. The cell accepts that as
 //   an error of timing.
 // - The points of a camera are false and move as points may. A program that publishes them first,
