@@ -27,6 +27,13 @@ struct ChainJoint {
   double largest_reach = kInfinity;
 };
 
+// What brings two bodies nearer to each other: if each variable changes by at most its bound, their
+// distance falls by at most the sum of the bounds times these factors.
+struct Lever {
+  std::uint32_t variable = 0;  // as Chains::of_carrier() counts them
+  double factor = 0.0;         // m/rad, or 1; infinity: there is no bound
+};
+
 struct Chain {
   static constexpr std::uint32_t kNone = ~0u;
   std::uint32_t begin = 0, end = 0;  // into Chains::joints, from the base to the tip
@@ -79,6 +86,11 @@ class Chains {
   }
   [[nodiscard]] std::uint32_t of_carrier(std::uint32_t robot) const noexcept {
     return static_cast<std::uint32_t>(scene_.variables.size()) + 2 * robot;
+  }
+
+  // From the base to the tip. An axis with no bound has an infinite or immense reach.
+  [[nodiscard]] std::span<const ChainJoint> joints(const Chain& chain) const noexcept {
+    return std::span(joints_).subspan(chain.begin, chain.end - chain.begin);
   }
 
   // To be called once, after the last between().

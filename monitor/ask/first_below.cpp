@@ -10,22 +10,6 @@
 #include "monitor/pairs/kept_near.hpp"
 
 namespace clearance {
-namespace {
-
-// Shorter stretches are not divided for a pair whose bounds at an instant enclose the margin,
-// relative to the duration.
-constexpr double kUnclear = 0x1p-8;
-
-// A limit below 0 is that of a contact which is meant.
-bool proves(double lower, double limit) noexcept {
-  return limit != 0.0 ? lower >= limit : lower > 0.0;
-}
-
-bool is_below(double upper, double limit) noexcept {
-  return limit != 0.0 ? upper < limit : upper <= 0.0;
-}
-
-}  // namespace
 
 // Pairs are exempt by margin, so a proof for one margin says nothing about another.
 void MotionSearch::exempt_kept(double margin) {
@@ -89,29 +73,14 @@ void MotionSearch::decide_margins() {
   exempt_.clear();
 }
 
-// The least distances say whether any margin is open at all.
-void MotionSearch::decide_by_pair() noexcept {
-  proven_until_ = posture_.trajectory().begin();
-  MarginAnswer& decided = answer_->margins.front();
-  decided.verdict = Verdict::kFree;
-  const auto keeps = [&](std::size_t p) {
-    return question_->margins_by_pair[p] == -kInfinity ||
-           proves(answer_->lower_by_pair[p], question_->margins_by_pair[p]);
-  };
-  bool all = !question_->only_margins;
-  for (std::size_t p = 0; all && p < answer_->lower_by_pair.size(); ++p) all = keeps(p);
-  if (!all) decide(decided);
-}
-
 void MotionSearch::decide(MarginAnswer& answer) noexcept {
-  if (!answer_->has_pair || (!is_by_pair() && proves(answer_->lower, answer.margin))) {
+  if (!answer_->has_pair || proves(answer_->lower, answer.margin)) {
     answer.verdict = Verdict::kFree;
     return;
   }
   const Stretch whole = posture_.trajectory().whole();
   answer.above_until = whole.from;
-  const bool any_pair_counts =
-      question_->only_verdicts && contacts_.empty() && exempt_.empty() && !is_by_pair();
+  const bool any_pair_counts = question_->only_verdicts && contacts_.empty() && exempt_.empty();
   if (any_pair_counts && is_below(answer_->upper, answer.margin)) {
     answer.verdict = Verdict::kBelow;
     answer.below_at = answer_->time;

@@ -8,22 +8,9 @@
 namespace clearance {
 void MotionSearch::find_least() {
   const OpenList all = all_pairs();
-  if (!is_by_pair()) seed_upper(all);
+  seed_upper(all);
   minimise(posture_.trajectory().whole(), all, 0.0);
-  write_least();
-}
-
-void MotionSearch::write_least() noexcept {
-  if (!is_by_pair()) {
-    answer_->lower = std::max(0.0, std::min(leasts_[0].closed, answer_->upper));
-    return;
-  }
-  answer_->lower = answer_->upper;
-  for (std::size_t p = 0; p < answer_->lower_by_pair.size(); ++p) {
-    const double lower = std::min(leasts_[p].closed, leasts_[p].reached);
-    answer_->lower_by_pair[p] = std::max(0.0, lower);
-    answer_->lower = std::min(answer_->lower, answer_->lower_by_pair[p]);
-  }
+  answer_->lower = std::max(0.0, std::min(leasts_[0].closed, answer_->upper));
 }
 
 // Queries the pair that seems closest in the middle, so that no search begins without an upper
@@ -69,18 +56,13 @@ void MotionSearch::minimise(const Stretch& stretch, const OpenList& list, double
   if (list.is_empty()) return;
   if (is_exhausted()) {
     answer_->within_work_limit = false;
-    for (std::size_t k = list.begin; k < list.end; ++k) {
-      const std::uint32_t* const order = &order_[pairs_.bundles()[open_[k].bundle].first];
-      for (std::uint32_t i = 0; i < open_[k].count; ++i) {
-        Least& least = least_of(order[i]);
-        least.closed = std::min(least.closed, known);
-      }
-    }
+    leasts_[0].closed = std::min(leasts_[0].closed, known);
     return;
   }
   const double middle = posture_.trajectory().middle(stretch);
   place(stretch, middle);
   const bool divides = can_divide(stretch, middle);
+  Least& all = leasts_[0];
   double least = kInfinity, closing = 0.0;
   OpenList left{list.end, list.end};
   for (std::size_t k = list.begin; k < list.end; ++k) {
@@ -90,19 +72,18 @@ void MotionSearch::minimise(const Stretch& stretch, const OpenList& list, double
     std::uint32_t kept = 0;
     for (std::uint32_t i = 0; i < open_[k].count; ++i) {
       const std::uint32_t pair = order[i];
-      Least& of_pair = least_of(pair);
       const auto enough = [&] {
-        return std::min(question_->far_enough, of_pair.reached - question_->tolerance);
+        return std::min(question_->far_enough, all.reached - question_->tolerance);
       };
       const Pair at = pair_at(pair, motion);
-      const double apart = gap(at, pair, rounded_up(of_pair.reached + at.loss));
+      const double apart = gap(at, pair, rounded_up(all.reached + at.loss));
       double lower = rounded_down(apart - at.loss);
-      if (lower >= of_pair.reached) continue;  // it cannot lower the least distance
+      if (lower >= all.reached) continue;  // it cannot lower the least distance
       // No distance is negative, so a pair in contact is decided as well.
       bool decided = std::max(0.0, lower) >= enough();
       const double size = at.tip.sphere_in_world.radius;
-      const bool worth = apart < of_pair.reached ||
-                         apart + size >= enough() + kShareAlongNormal * at.loss || !divides;
+      const bool worth =
+          apart < all.reached || apart + size >= enough() + kShareAlongNormal * at.loss || !divides;
       double speed = 0.0;
       if (!decided && worth) {
         const PairAtMiddle found = query(at, pair);
@@ -115,7 +96,7 @@ void MotionSearch::minimise(const Stretch& stretch, const OpenList& list, double
                   is_as_good_as_at_middle(lower, bundle.model_error, found, at);
       }
       if (decided || !divides) {
-        of_pair.closed = std::min(of_pair.closed, lower);
+        all.closed = std::min(all.closed, lower);
         continue;
       }
       if (lower < least) {

@@ -6,6 +6,7 @@
 #include <numeric>
 #include <utility>
 
+#include "config/scene/chain_rounding.hpp"
 #include "config/scene/pairs_between.hpp"
 #include "monitor/bodies/directed_rounding.hpp"
 
@@ -54,6 +55,22 @@ MotionSearch::MotionSearch(const Scene& scene)
   }
 }
 
+std::vector<Lever> MotionSearch::levers(std::uint32_t pair) const {
+  const auto at = std::ranges::find(watched_, pair) - watched_.begin();
+  const Bundle& bundle = bundle_of(static_cast<std::uint32_t>(at));
+  std::vector<Lever> levers;
+  for (const ChainJoint& joint : posture_.chains().joints(bundle.chain)) {
+    const double reach = joint.largest_reach < kLargestLength ? joint.largest_reach : kInfinity;
+    levers.push_back({joint.variable, joint.factor * (joint.rotates ? reach : 1.0)});
+  }
+  return levers;
+}
+
+double MotionSearch::model_error(std::uint32_t pair) const {
+  const auto at = std::ranges::find(watched_, pair) - watched_.begin();
+  return bundle_of(static_cast<std::uint32_t>(at)).model_error;
+}
+
 std::optional<std::string> MotionSearch::fault(const Question& question) const {
   if (!(question.tolerance > 0.0) || !(question.margin_tolerance > 0.0) ||
       !(question.scaling_tolerance > 0.0)) {
@@ -61,6 +78,8 @@ std::optional<std::string> MotionSearch::fault(const Question& question) const {
   }
   if (!question.margins_by_pair.empty() && question.margins_by_pair.size() != scene_.pairs.size())
     return "the question needs a margin for each watched pair, or none";
+  if (!question.known_by_pair.empty() && question.known_by_pair.size() != scene_.pairs.size())
+    return "the question needs a known bound for each watched pair, or none";
   const auto wrong = [](double margin) -> std::optional<std::string> {
     if (margin >= 0.0 && std::isfinite(margin)) return std::nullopt;
     return "a margin is " + std::to_string(margin) + "; expected a finite number from 0 on, m";
@@ -100,10 +119,10 @@ std::optional<std::string> MotionSearch::ask(const Question& question, Answer& a
   }
   if (auto text = take_contacts(question)) return text;
   begin(question, answer);
-  if (!question.only_margins) find_least();
   if (is_by_pair()) {
-    decide_by_pair();
+    bound_by_pair();
   } else {
+    if (!question.only_margins) find_least();
     decide_margins();
   }
   if (question.profile) make_profile(*question.profile);
@@ -125,6 +144,7 @@ void MotionSearch::begin(const Question& question, Answer& answer) {
   answer.margins.assign(
       is_by_pair() ? 1 : question.margins.size() + question.margins_between.size(), {});
   answer.lower_by_pair.assign(question.margins_by_pair.size(), -kInfinity);
+  if (is_by_pair()) make_room_by_pair();
   answer.upper = kInfinity;
   std::ranges::fill(leasts_, Least());
   duration_ = posture_.trajectory().end() - posture_.trajectory().begin();

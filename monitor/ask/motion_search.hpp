@@ -27,6 +27,11 @@ class MotionSearch {
   // Does what Asker::ask() does, for a question without payloads.
   [[nodiscard]] std::optional<std::string> ask(const Question& question, Answer& answer);
 
+  // Of one of Scene::pairs, which has to have a link that moves.
+  [[nodiscard]] std::vector<Lever> levers(std::uint32_t pair) const;
+  // No stated error changes the distance of that pair by more, m.
+  [[nodiscard]] double model_error(std::uint32_t pair) const;
+
  private:
   // A query is worth its time only if it may decide the pair. The motion that counts, along the
   // normal, is about this share of all.
@@ -34,6 +39,31 @@ class MotionSearch {
   // The first instant below a margin, and the end of a contact, are known to this, relative to the
   // duration.
   static constexpr double kInstant = 1e-7;
+  // Shorter stretches are not divided for a pair whose bounds at an instant enclose the margin,
+  // relative to the duration.
+  static constexpr double kUnclear = 0x1p-8;
+  // A limit below 0 is that of a contact which is meant.
+  [[nodiscard]] static bool proves(double lower, double limit) noexcept {
+    return limit != 0.0 ? lower >= limit : lower > 0.0;
+  }
+  [[nodiscard]] static bool is_below(double upper, double limit) noexcept {
+    return limit != 0.0 ? upper < limit : upper <= 0.0;
+  }
+  // A stretch that waits in bounds_by_pair.cpp, and its pairs in waiting_.
+  struct WaitingStretch {
+    Stretch stretch;
+    std::size_t begin = 0, end = 0;
+    double width = kInfinity;  // m: no bound that matters is worse by more
+    // The worst is first in the heap, and among equal ones the earliest.
+    friend bool operator<(const WaitingStretch& a, const WaitingStretch& b) noexcept {
+      return a.width != b.width ? a.width < b.width : a.stretch.from > b.stretch.from;
+    }
+  };
+  struct WaitingPair {
+    std::uint32_t pair = 0;     // PartPairs
+    double lower = -kInfinity;  // m: over the stretch
+    bool seeks_least = true;    // its least distance, beside where its margin ends
+  };
   // The first `count` pairs of a bundle, in the order of order_, are not decided.
   struct Open {
     std::uint32_t bundle = 0, count = 0;
@@ -108,12 +138,26 @@ class MotionSearch {
 
   // The least distance (least_distance.cpp).
   void find_least();
-  void write_least() noexcept;
   void seed_upper(const OpenList& all) noexcept;
   [[nodiscard]] bool is_as_good_as_at_middle(double lower, double model_error,
                                              const PairAtMiddle& found,
                                              const Pair& at) const noexcept;
   void minimise(const Stretch& stretch, const OpenList& list, double known) noexcept;
+
+  // Each pair of objects by itself (bounds_by_pair.cpp).
+  void make_room_by_pair();
+  void bound_by_pair() noexcept;
+  void wait_for_all() noexcept;
+  [[nodiscard]] KnownBound known_of(std::size_t objects) const noexcept;  // Scene::pairs
+  void examine(const WaitingStretch& waiting) noexcept;
+  void bound_over(const Stretch& stretch, double middle, const Pair& at, const Bundle& bundle,
+                  const TipMotion& motion, WaitingPair& of) noexcept;
+  void close(const Stretch& stretch, const WaitingPair& of) noexcept;
+  [[nodiscard]] double margin_of(std::uint32_t pair) const noexcept {
+    return question_->margins_by_pair[watched_[pair]];
+  }
+  [[nodiscard]] double enough_for_least(std::uint32_t pair) noexcept;
+  [[nodiscard]] bool seeks_first(const Stretch& stretch, const WaitingPair& of) const noexcept;
 
   // Contacts that are meant (meant_contacts.cpp).
   [[nodiscard]] std::optional<std::string> take_contacts(const Question& question);
@@ -123,7 +167,6 @@ class MotionSearch {
   // The distance that a pair has to keep up to an instant, m: a margin, or less for a contact.
   [[nodiscard]] double limit_until(double instant, std::uint32_t pair,
                                    double margin) const noexcept {
-    if (is_by_pair()) return question_->margins_by_pair[watched_[pair]];
     if (!exempt_.empty() && exempt_[pair] != 0) return -kInfinity;
     if (contacts_.empty() || contact_of_[pair] == kNotMeant) return margin;
     const Meant& meant = contacts_[contact_of_[pair]];
@@ -132,7 +175,6 @@ class MotionSearch {
 
   // The margins (first_below.cpp).
   void decide_margins();
-  void decide_by_pair() noexcept;
   void decide(MarginAnswer& answer) noexcept;
   // A margin counts for no other pairs from now on; all pairs: none is exempt.
   void exempt_kept(double margin);
@@ -159,7 +201,9 @@ class MotionSearch {
   std::vector<std::uint32_t> order_;  // indices of pairs, bundle by bundle
   std::vector<Open> open_;            // the lists of all levels, one after the other
   std::vector<double> gaps_;          // by pair, at the present instant
-  std::vector<Piece> pieces_;         // a heap
+  std::vector<WaitingStretch> stretches_;
+  std::vector<WaitingPair> waiting_;
+  std::vector<Piece> pieces_;  // a heap
   OpenList profiled_;
   ObjectApproach approach_;  // of the last pair_at(), if it is not the object's own
   std::vector<SeparatedPair> separated_;

@@ -40,6 +40,7 @@ class Posture {
 
   [[nodiscard]] const Trajectory& trajectory() const noexcept { return trajectory_; }
   [[nodiscard]] Chains& chains() noexcept { return chains_; }
+  [[nodiscard]] const Chains& chains() const noexcept { return chains_; }
   [[nodiscard]] const std::vector<PosedPart>& parts() const noexcept { return parts_; }
   [[nodiscard]] std::span<const std::uint32_t> first_part() const noexcept { return first_part_; }
   [[nodiscard]] std::span<const VariableBounds> bounds() const noexcept { return bounds_; }

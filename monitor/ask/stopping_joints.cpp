@@ -105,8 +105,11 @@ double StoppingJoints::at_most_in_proportion(double scaling) const noexcept {
   return longest;
 }
 
-void StoppingJoints::state(StatedJoint& out, std::uint32_t variable) const noexcept {
-  const Joint& joint = *find(variable);
+double StoppingJoints::covered(std::uint32_t variable) const noexcept {
+  return covered(*find(variable));
+}
+
+double StoppingJoints::covered(const Joint& joint) const noexcept {
   const double faster = rounded_up(joint.speed + joint.gained);
   double braking = joint.stop->distance(faster);
   if (stops_.keeps_path) {
@@ -114,7 +117,12 @@ void StoppingJoints::state(StatedJoint& out, std::uint32_t variable) const noexc
     const double longest = longest_time(1.0);
     if (joint.gained > 0.0) braking += 0.5 * joint.acceleration * longest * longest;
   }
-  const double covered = rounded_up(faster * reaction() + braking);
+  return rounded_up(faster * reaction() + braking);
+}
+
+void StoppingJoints::state(StatedJoint& out, std::uint32_t variable) const noexcept {
+  const Joint& joint = *find(variable);
+  const double covered = this->covered(joint);
   const bool either = joint.any_direction || joint.gained > 0.0;
   out.position = joint.position;
   if (!either) out.position += std::copysign(0.5 * covered, joint.velocity);

@@ -33,6 +33,8 @@ class StoppingJoints {
   [[nodiscard]] bool is_assumed() const noexcept { return is_assumed_; }
   // From this tick until the robot stands, s.
   [[nodiscard]] double time() const noexcept;
+  // A joint is no farther from its present position until then, rad or m.
+  [[nodiscard]] double covered(std::uint32_t variable) const noexcept;
   // Where a joint may be until then: no farther than `most` from `position`, rad or m.
   void state(StatedJoint& out, std::uint32_t variable) const noexcept;
   // Writes the motion of a stop from `scaling` times the present speeds.
@@ -61,6 +63,7 @@ class StoppingJoints {
   };
   [[nodiscard]] const Joint* find(std::uint32_t variable) const noexcept;
   void read(const Inputs& inputs, Joint& joint) noexcept;
+  [[nodiscard]] double covered(const Joint& joint) const noexcept;
   [[nodiscard]] double reaction() const noexcept;
   [[nodiscard]] double longest_time(double scaling) const noexcept;
   [[nodiscard]] double in_proportion(double scaling) const noexcept;

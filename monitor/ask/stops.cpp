@@ -11,13 +11,19 @@
 namespace clearance {
 namespace {
 
-constexpr double kTolerance = 4e-3;  // m
-constexpr double kRounding = 1e-9;   // m: of the places of joints until they stand
+constexpr double kTolerance = 4e-3;    // m
+constexpr double kRounding = 1e-9;     // m: of the places of joints until they stand
+constexpr double kRelative = 0x1p-44;  // of sums over levers
 // Pairs that stay certainly farther than their margin by this are not examined more closely, m.
 constexpr double kFarBeyondMargin = 0.1;
 constexpr double kShare = 1e-3;           // of the motion: where it is not clear any more
-constexpr std::uint32_t kMostWork = 400;  // queries and placements of a robot in a tick
+constexpr std::uint32_t kMostWork = 800;  // queries and placements of a robot in a tick
 constexpr std::uint32_t kHalvings = 4;    // of a share of the speed
+
+// A margin of 0 demands that the bodies do not touch.
+bool keeps(double lower, double margin) noexcept {
+  return margin != 0.0 ? lower - kRounding >= margin : lower > kRounding;
+}
 
 }  // namespace
 
@@ -38,6 +44,8 @@ Stops::Stops(const Scene& scene) : scene_(scene), stopping_of_robot_(scene.robot
     if (!scene.objects[i].fixed && robot_of_object_[i] == kNone) tracked_.push_back(i);
   }
   kept_near_ = kept_nearer(scene, 0.0);
+  changes_.resize(scene.variables.size() + 2 * scene.robots.size());
+  approaches_.resize(scene.objects.size());
   for (StoppingRobot& robot : robots_) {
     add_pairs(robot);
     add_others(robot);
@@ -90,7 +98,16 @@ void Stops::add_pairs(StoppingRobot& robot) const {
                            .published = place,
                            .margin = stated[p] > -kInfinity ? stated[p]
                                      : is_near              ? -kInfinity
-                                                            : 0.0});
+                                                            : 0.0,
+                           .first_lever = static_cast<std::uint32_t>(robot.levers.size())});
+    const std::vector<Lever> levers = search_->levers(p);
+    robot.levers.insert(robot.levers.end(), levers.begin(), levers.end());
+    WatchedPair& added = robot.pairs.back();
+    added.end_lever = static_cast<std::uint32_t>(robot.levers.size());
+    added.model_error = search_->model_error(p);
+    const bool is_tracked =
+        robot_of_object_[added.other] == kNone && !scene_.objects[added.other].fixed;
+    added.tracked = is_tracked ? added.other : kNone;
     largest = std::max(largest, robot.pairs.back().margin);
     for (const std::uint32_t object : {pair.first, pair.second})
       if (robot_of_object_[object] != kNone) robot.beside.push_back(robot_of_object_[object]);
@@ -99,6 +116,8 @@ void Stops::add_pairs(StoppingRobot& robot) const {
   robot.beside.erase(std::ranges::unique(robot.beside).begin(), robot.beside.end());
   robot.question.far_enough = largest + kFarBeyondMargin;
   robot.question.margins_by_pair = robot.margins;
+  robot.known.resize(scene_.pairs.size());
+  robot.question.known_by_pair = robot.known;
 }
 
 // Room for what write() states in each tick, in an order that stays.
@@ -232,18 +251,65 @@ void Stops::state_others(const Inputs& inputs, const CloudPairs* clouds, double 
   }
 }
 
-void Stops::write(const Inputs& inputs, StoppingRobot& robot, Report& report,
-                  RobotStop& out) noexcept {
-  Question& question = robot.question;
-  question.only_margins = question.only_verdicts = false;
-  question.work_limit = std::min(scene_.budget, kMostWork);
-  robot.joints.write_motion(1.0, question.motion);
-  if (search_->ask(question, robot.answer)) return;
-  out.validity =
-      robot.joints.is_assumed() ? SeparationValidity::kAssumed : SeparationValidity::kMeasured;
+// By how much each body may come nearer to others from the places that are in use. What is stated
+// for a search counts, so that this admits no less.
+void Stops::note_changes(const Inputs& inputs, const StoppingRobot& robot) noexcept {
+  const Question& question = robot.question;
+  std::ranges::fill(changes_, kInfinity);  // of what carries a robot
+  std::size_t next = 0;
+  for (std::uint32_t v = 0; v < scene_.variables.size(); ++v) {
+    if (robot.joints.has(v)) {
+      changes_[v] = robot.joints.covered(v);
+      continue;
+    }
+    const StatedJoint& stated = question.joints[next++];
+    const double offset = std::abs(stated.position - inputs.robots.variables()[v].position);
+    const double by_speed = swept(stated.age, scene_.variables[v].max_speed);
+    changes_[v] = offset == 0.0 ? std::min(stated.most, by_speed) : stated.most + offset;
+  }
+  std::size_t pose = 0, frame = 0;
+  for (const std::uint32_t i : tracked_) {
+    const double age =
+        scene_.objects[i].is_seen() ? question.seen[frame++].age : question.poses[pose++].age;
+    approaches_[i] = swept(age, scene_.objects[i].max_speed);
+  }
+}
+
+// A bound of this tick falls by what the levers and the other body's motion admit. It is enough if
+// the pair keeps its margin, and either is far or was hardly farther before the stop. Pairs with
+// absent objects need none.
+bool Stops::bound_by_levers(const Inputs& inputs, const Report& report,
+                            StoppingRobot& robot) noexcept {
+  note_changes(inputs, robot);
+  bool is_enough = true;
+  for (const WatchedPair& pair : robot.pairs) {
+    KnownBound& known = robot.known[pair.pair];
+    known = {};
+    const double margin = robot.margins[pair.pair];
+    const bool is_known = inputs.objects[pair.other].known();
+    if (is_known && pair.published != kNone) {
+      double nearer = pair.model_error + (pair.tracked == kNone ? 0.0 : approaches_[pair.tracked]);
+      for (std::uint32_t i = pair.first_lever; i < pair.end_lever; ++i)
+        nearer += swept(changes_[robot.levers[i].variable], robot.levers[i].factor);
+      const PairReport& now = report.pairs[pair.published];
+      const double lower = now.lower - (1.0 + kRelative) * nearer;
+      known.lower = lower > 0.0 ? rounded_down(lower) : 0.0;
+      // The bound of another robot holds while this one stops as well, wherever both are.
+      if (pair.tracked == kNone) known.lower = std::max(known.lower, now.stop_lower);
+      const double enough = std::min(robot.question.far_enough, now.upper - kTolerance);
+      known.is_enough = keeps(known.lower, margin) && known.lower >= enough;
+    }
+    is_enough = is_enough && (known.is_enough || (!is_known && margin == -kInfinity));
+  }
+  return is_enough;
+}
+
+template <class Bound>
+void Stops::write_bounds(const Inputs& inputs, const StoppingRobot& robot, const Bound& bound,
+                         Report& report, RobotStop& out) const noexcept {
   out.clearance = kInfinity;
   for (const WatchedPair& pair : robot.pairs) {
-    const double lower = std::max(0.0, robot.answer.lower_by_pair[pair.pair] - kRounding);
+    const double lower = std::max(0.0, bound(pair.pair) - kRounding);
     if (pair.published != kNone && inputs.objects[pair.other].known()) {
       PairReport& of = report.pairs[pair.published];
       of.stop_lower = std::max(of.stop_lower, std::min(lower, std::max(0.0, of.lower)));
@@ -256,6 +322,29 @@ void Stops::write(const Inputs& inputs, StoppingRobot& robot, Report& report,
       out.pair = pair.pair;
     }
   }
+}
+
+void Stops::write(const Inputs& inputs, StoppingRobot& robot, Report& report,
+                  RobotStop& out) noexcept {
+  out.validity =
+      robot.joints.is_assumed() ? SeparationValidity::kAssumed : SeparationValidity::kMeasured;
+  if (bound_by_levers(inputs, report, robot)) {
+    write_bounds(
+        inputs, robot, [&](std::uint32_t p) { return robot.known[p].lower; }, report, out);
+    out.scaling = out.share = 1.0;
+    return;
+  }
+  Question& question = robot.question;
+  question.only_verdicts = false;
+  question.work_limit = std::min(scene_.budget, kMostWork);
+  question.instant = robot.joints.is_on_line() ? kShare : 1.0;
+  robot.joints.write_motion(1.0, question.motion);
+  if (search_->ask(question, robot.answer)) {
+    out.validity = SeparationValidity::kUnknown;
+    return;
+  }
+  write_bounds(
+      inputs, robot, [&](std::uint32_t p) { return robot.answer.lower_by_pair[p]; }, report, out);
   const MarginAnswer& decided = robot.answer.margins.front();
   out.scaling = out.share = 1.0;
   if (decided.verdict == Verdict::kFree) return;
@@ -268,12 +357,16 @@ void Stops::write(const Inputs& inputs, StoppingRobot& robot, Report& report,
   out.scaling = largest_scaling(out.share, robot);
 }
 
-// On one line, a lower speed ends on a part of it. Else a share of the speed has to be proven.
+// On one line, a lower speed ends on a part of it. Else a share of the speed has to be proven: for
+// the pairs that are not clear of full speed, since its region has those of all lower ones.
 double Stops::largest_scaling(double clear_share, StoppingRobot& robot) noexcept {
   if (robot.joints.is_on_line()) return robot.joints.scaling_within(clear_share);
   double least = 0.0, most = 1.0;
   Question& question = robot.question;
-  question.only_margins = question.only_verdicts = true;
+  question.only_verdicts = true;
+  for (const WatchedPair& pair : robot.pairs)
+    if (keeps(robot.answer.lower_by_pair[pair.pair], robot.margins[pair.pair]))
+      robot.margins[pair.pair] = -kInfinity;
   question.work_limit = std::min(scene_.budget, kMostWork) / kHalvings;
   for (std::uint32_t i = 0; i < kHalvings; ++i) {
     const double middle = 0.5 * (least + most);

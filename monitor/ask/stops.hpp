@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "config/scene/scene.hpp"
+#include "monitor/ask/chains.hpp"
 #include "monitor/ask/stopping_joints.hpp"
 #include "monitor/bodies/ingest.hpp"
 #include "monitor/interface/question.hpp"
@@ -40,6 +41,10 @@ class Stops {
     std::uint32_t other = 0;      // object that may be late or unknown; Scene::objects
     std::uint32_t published = 0;  // index into Report::pairs, or kNone
     double margin = 0.0;          // m; -infinity: the robot's build keeps it nearer
+    // What brings its bodies nearer to each other: these levers, and the motion of `tracked`.
+    std::uint32_t first_lever = 0, end_lever = 0;
+    std::uint32_t tracked = 0;  // neither fixed nor a link; Scene::objects, or kNone
+    double model_error = 0.0;   // m
   };
   struct StoppingRobot {
     StoppingRobot(const Scene& scene, std::uint32_t of);
@@ -50,7 +55,9 @@ class Stops {
     StoppingJoints joints;
     std::vector<WatchedPair> pairs;
     std::vector<std::uint32_t> beside;  // robots with a link in one of them, ascending
+    std::vector<Lever> levers;          // of all pairs
     std::vector<double> margins;        // by Scene::pairs, in this tick
+    std::vector<KnownBound> known;      // the same
   };
   static constexpr std::uint32_t kNone = ~0u;
 
@@ -64,6 +71,14 @@ class Stops {
   [[nodiscard]] std::optional<std::uint32_t> unknown_pair(const Inputs& inputs,
                                                           const Contacts& contacts,
                                                           StoppingRobot& robot) const noexcept;
+  // Writes what is known of each pair without a search. Returns whether that is enough.
+  [[nodiscard]] bool bound_by_levers(const Inputs& inputs, const Report& report,
+                                     StoppingRobot& robot) noexcept;
+  void note_changes(const Inputs& inputs, const StoppingRobot& robot) noexcept;
+  // `bound`: by pair.
+  template <class Bound>
+  void write_bounds(const Inputs& inputs, const StoppingRobot& robot, const Bound& bound,
+                    Report& report, RobotStop& out) const noexcept;
   [[nodiscard]] double largest_scaling(double clear_share, StoppingRobot& robot) noexcept;
   void write(const Inputs& inputs, StoppingRobot& robot, Report& report, RobotStop& out) noexcept;
 
@@ -73,6 +88,8 @@ class Stops {
   std::vector<std::uint32_t> robot_of_object_;    // kNone: no link
   std::vector<std::uint32_t> tracked_;            // objects that are neither fixed nor links
   std::vector<std::uint32_t> kept_near_;          // pairs that a robot's build keeps in contact
+  // Until the robot stands: by variable, rad or m; by object that is neither fixed nor a link, m.
+  std::vector<double> changes_, approaches_;
   std::unique_ptr<MotionSearch> search_;
 };
 

@@ -114,6 +114,11 @@ struct MarginBetween {
   double margin = 0.0;  // m, from 0 on
 };
 
+struct KnownBound {
+  double lower = -kInfinity;  // m: no distance of the pair is less
+  bool is_enough = false;     // the pair is not examined
+};
+
 struct Question {
   JointTrajectory motion;
   std::vector<JointTrajectory> beside;  // of other robots, which rest before and after it
@@ -138,6 +143,8 @@ struct Question {
   // By Scene::pairs, the margin of each pair, m; -infinity: it has none. `margins` and
   // `margins_between` do not count then. Empty: not asked for.
   std::span<const double> margins_by_pair = {};
+  // With `margins_by_pair`, and like it: what is proven of each pair already.
+  std::span<const KnownBound> known_by_pair = {};
   double tolerance = 1e-3;  // m: `upper` - `lower` at the end
   // m: a margin is undecided if the least distance is nearer to it than this.
   double margin_tolerance = 1e-10;
