@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <cstring>
 #include <iterator>
 #include <limits>
@@ -136,6 +137,38 @@ bool allows_minimum(const clearance_msg_Distances& report,
   return report.lower_all >= least.upper || (report.minimum_certified && is_tight);
 }
 
+// A robot is clear if it is clear in each share. Who has no pair of it still reports it.
+clearance_msg_RobotStop joined_stop(const ShareMap& map, std::span<const ShareView> views,
+                                    std::uint32_t robot) {
+  clearance_msg_RobotStop joined{};
+  bool is_known = true, has_any = false;
+  for (std::size_t share = 0; share < views.size(); ++share) {
+    if (map.pairs(share) == 0) continue;
+    const bool is_heard =
+        views[share].state == ShareState::kWhole && views[share].separation != nullptr;
+    const auto stops =
+        is_heard ? list(views[share].separation->stops) : std::span<clearance_msg_RobotStop>();
+    const auto found = std::ranges::find(stops, robot, &clearance_msg_RobotStop::robot);
+    if (found == stops.end()) {
+      is_known = false;
+      continue;
+    }
+    const auto rank = [](const clearance_msg_RobotStop& of) {
+      return std::pair(of.scaling, of.clearance);
+    };
+    const clearance_msg_RobotStop worst = !has_any || rank(*found) < rank(joined) ? *found : joined;
+    const auto before = has_any ? joined : *found;
+    joined = worst;
+    joined.validity = std::min(before.validity, found->validity);
+    joined.clearance = std::min(before.clearance, found->clearance);
+    joined.share = std::min(before.share, found->share);
+    joined.time = found->time > before.time || std::isnan(found->time) ? found->time : before.time;
+    has_any = true;
+  }
+  if (is_known && has_any) return joined;
+  return {.robot = robot, .clearance = -kNone, .time = std::numeric_limits<double>::quiet_NaN()};
+}
+
 }  // namespace
 
 const char* name(ShareState state) noexcept {
@@ -181,6 +214,8 @@ ShareMap::ShareMap(const clearance_msg_Catalogue& catalogue)
   for (const std::uint32_t zone : list(catalogue.separated_zones)) {
     if (zone < zones_.size() && !zones_[zone].empty()) separated_.push_back(zone);
   }
+  const auto stopping = list(catalogue.stopping_robots);
+  stopping_.assign(stopping.begin(), stopping.end());
 }
 
 void join_reports(const ShareMap& map, std::span<const ShareView> views,
@@ -273,6 +308,9 @@ void join_separations(const ShareMap& map, std::span<const ShareView> views,
     }
     append(out.zones, least);
   }
+  begin(out.stops, map.stopping().size());
+  for (const std::uint32_t robot : map.stopping())
+    append(out.stops, joined_stop(map, views, robot));
 }
 
 void join_gradients(const ShareMap& map, std::span<const ShareView> views,

@@ -58,6 +58,8 @@ class ShareMap {
   }
   // The zones with `separation` that have a pair of any share, ascending.
   [[nodiscard]] const std::vector<std::uint32_t>& separated() const noexcept { return separated_; }
+  // The robots that state how they stop, ascending.
+  [[nodiscard]] const std::vector<std::uint32_t>& stopping() const noexcept { return stopping_; }
   // The first pair of a share in the cell, for a zone that is active because of it.
   [[nodiscard]] std::uint32_t first_pair(std::size_t share) const { return first_pairs_[share]; }
 
@@ -67,7 +69,7 @@ class ShareMap {
   std::vector<std::uint32_t> pairs_, first_pairs_;
   std::vector<Published> published_;
   std::vector<std::vector<std::size_t>> zones_;
-  std::vector<std::uint32_t> separated_;
+  std::vector<std::uint32_t> separated_, stopping_;
 };
 
 // Fills `out` with the report of the whole cell. One view a share, in the order of the map.
@@ -83,7 +85,7 @@ void join_reports(const ShareMap& map, std::span<const ShareView> views,
 
 // The same for separations, with an entry for each of map.separated(). A zone of a share that is
 // not whole, or that has no separation of the time of its report, has validity 0 and scaling 0, as
-// its pairs.
+// its pairs. So has each of map.stopping() if there is such a share. Else the worst share counts.
 void join_separations(const ShareMap& map, std::span<const ShareView> views,
                       clearance_msg_Separation& out);
 

@@ -211,7 +211,7 @@ bool SharedCell::join(std::int64_t now_ns) {
   ++message_->cycle;
   check_ = checker_.check(*message_, now_ns);
   join_zones();
-  if (!map_.separated().empty()) {
+  if (!map_.separated().empty() || !map_.stopping().empty()) {
     join_separations(map_, views, *separation_);
     sign(*separation_);
   }

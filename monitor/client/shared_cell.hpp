@@ -71,7 +71,7 @@ class SharedCell {
   }
   // Separations of the report at hand; null if the cell has none, or is not known yet.
   [[nodiscard]] const clearance_msg_Separation* separation() const noexcept {
-    return map_.separated().empty() ? nullptr : &*separation_;
+    return map_.separated().empty() && map_.stopping().empty() ? nullptr : &*separation_;
   }
   // Gradients of the report at hand, if they are asked for; null: no share has any. A pair of a
   // share that is not whole is not in them.

@@ -81,6 +81,14 @@ void fill_separated(const Cell& cell, clearance_msg_Catalogue& out) {
   }
 }
 
+void fill_stopping(const Scene& scene, clearance_msg_Catalogue& out) {
+  reserve_sequence(out.stopping_robots, scene.robots.size());
+  for (std::uint32_t robot = 0; robot < scene.robots.size(); ++robot) {
+    if (!scene.robots[robot].stopping.is_stated()) continue;
+    out.stopping_robots._buffer[out.stopping_robots._length++] = robot;
+  }
+}
+
 // The index of a share fits into an octet.
 void fill_shares(const Shares& shares, bool with_pairs, clearance_msg_Catalogue& out) {
   copy_text(shares.name(), out.share);
@@ -209,6 +217,7 @@ Sample<clearance_msg_Catalogue> make_catalogue(const Cell& cell, const SceneInFo
     fill(scene.zones[i], i, sample->zones._buffer[sample->zones._length++]);
   }
   fill_separated(cell, *sample);
+  fill_stopping(scene, *sample);
   reserve_sequence(sample->joints, scene.variables.size());
   for (std::uint32_t i = 0; i < scene.variables.size(); ++i) {
     sample->joints._buffer[sample->joints._length++] = {i, duplicate(scene.variables[i].name)};

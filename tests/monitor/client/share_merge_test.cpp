@@ -284,6 +284,52 @@ TEST(ShareMerge, ASeparationOfAShareThatIsNotHeardStopsTheRobot) {
   EXPECT_EQ(joined->zones._buffer[0].speed_limit, 0.0);
 }
 
+TEST(ShareMerge, ARobotStopsClearIfItDoesInAllShares) {
+  Shares shares(std::vector<std::pair<double, double>>(15, {1.0, 1.0}));
+  auto& stopping = shares.catalogue->stopping_robots;
+  reserve_sequence(stopping, 1);
+  stopping._buffer[stopping._length++] = 3;
+  shares.map = ShareMap(*shares.catalogue);
+  std::vector<Sample<clearance_msg_Separation>> of(3);
+  for (std::size_t share = 0; share < 3; ++share) {
+    reserve_sequence(of[share]->stops, 1);
+    of[share]->stops._buffer[of[share]->stops._length++] = {.robot = 3,
+                                                            .validity = 2,
+                                                            .scaling = 1.0,
+                                                            .clearance = 0.2,
+                                                            .pair = std::uint32_t(share),
+                                                            .share = 1.0,
+                                                            .time = 0.3};
+    shares.views[share].separation = &*of[share];
+  }
+  clearance_msg_RobotStop &worst = of[1]->stops._buffer[0], &late = of[2]->stops._buffer[0];
+  worst.scaling = 0.4;
+  worst.share = 0.6;
+  late.validity = 1;
+  late.clearance = 0.1;
+  late.time = 0.5;
+  Sample<clearance_msg_Separation> joined;
+  const auto stop = [&]() -> const clearance_msg_RobotStop& {
+    join_separations(shares.map, shares.views, *joined);
+    return joined->stops._buffer[0];
+  };
+  EXPECT_EQ(stop().robot, 3u);
+  EXPECT_EQ(joined->stops._length, 1u);
+  EXPECT_EQ(stop().scaling, 0.4);
+  EXPECT_EQ(stop().pair, 1u) << "the pair that limits it";
+  EXPECT_EQ(stop().validity, 1) << "the least of each figure";
+  EXPECT_EQ(stop().clearance, 0.1);
+  EXPECT_EQ(stop().share, 0.6);
+  EXPECT_EQ(stop().time, 0.5) << "the longest";
+  shares.views[0].separation = nullptr;
+  EXPECT_EQ(stop().validity, 0);
+  EXPECT_EQ(stop().scaling, 0.0);
+  EXPECT_EQ(stop().clearance, -kInfinity);
+  shares.views[0].separation = &*of[0];
+  shares.views[0].state = ShareState::kLate;
+  EXPECT_EQ(stop().scaling, 0.0);
+}
+
 // The first two shares have gradients of all their pairs, the last one has none.
 TEST(ShareMerge, GradientsOfAllSharesComeInTheOrderOfPairs) {
   Shares shares(std::vector<std::pair<double, double>>(15, {1.0, 1.0}));
