@@ -122,7 +122,7 @@ void PlannedStops::count(double factor, bool since_told, Trajectory& trajectory)
     pieces_.back().stretch.to = trajectory.end();
     bound(pieces_.size() - 1);
   }
-  note_delays();
+  note_earlier();
 }
 
 void PlannedStops::bound(std::size_t at) noexcept {
@@ -159,23 +159,27 @@ double PlannedStops::time_past_the_end() const noexcept {
   return std::max(longest, kShortestPast);
 }
 
-// A place of a piece is reached by stops that begin there; and, along the path, by earlier ones.
-void PlannedStops::note_delays() noexcept {
+// Along the path, a piece is reached by stops that begin before it, too.
+void PlannedStops::note_earlier() noexcept {
   double farthest = 0.0;
   for (const Piece& piece : pieces_) farthest = std::max(farthest, piece.reach);
   for (std::size_t p = 0; p < pieces_.size(); ++p) {
     Piece& piece = pieces_[p];
-    piece.delay = piece.braking;
+    piece.earlier = -kInfinity;
     for (std::size_t i = p; stops_->keeps_path && i-- > 0;) {
       const double since = piece.stretch.from - pieces_[i].stretch.to;
       if (since > farthest) break;
       if (since > pieces_[i].reach) continue;
-      piece.delay =
-          std::max(piece.delay, pieces_[i].braking - (since_told_ ? 0.0 : rounded_down(since)));
+      const double from = since_told_ ? 0.0 : pieces_[i].stretch.to - begin_;
+      piece.earlier = std::max(piece.earlier, rounded_up(from + pieces_[i].braking));
     }
   }
-  if (!since_told_) return;
-  for (Piece& piece : pieces_) piece.delay = rounded_up(piece.delay + stops_->reaction);
+}
+
+// The brakes act at the place, or before it; and no later than a reaction after the motion.
+double PlannedStops::elapsed_at(double t, double braking, double earlier) const noexcept {
+  if (since_told_) return stops_->reaction + std::max(braking, earlier);
+  return std::max(std::min(t, end_ + stops_->reaction) - begin_ + braking, earlier);
 }
 
 void PlannedStops::find_pieces(const Stretch& stretch, double at) noexcept {
@@ -203,19 +207,20 @@ void PlannedStops::find_pieces(const Stretch& stretch, double at) noexcept {
 void PlannedStops::place(const Stretch& stretch, double at,
                          std::span<TrackedVariable> variables) noexcept {
   find_pieces(stretch, at);
-  double most = 0.0, least = kInfinity;
-  for (std::size_t p = from_; p <= to_; ++p) {
-    most = std::max(most, pieces_[p].delay);
-    least = std::min(least, pieces_[p].delay);
+  Piece most = pieces_[from_], least = pieces_[from_];
+  for (std::size_t p = from_ + 1; p <= to_; ++p) {
+    most.braking = std::max(most.braking, pieces_[p].braking);
+    most.earlier = std::max(most.earlier, pieces_[p].earlier);
+    least.braking = std::min(least.braking, pieces_[p].braking);
+    least.earlier = std::min(least.earlier, pieces_[p].earlier);
   }
-  const auto planned = [&](double t) { return begin_ + (t - begin_) / factor_; };
-  clock_ = {planned(stretch.to) + most, planned(at) + pieces_[at_].delay,
-            planned(stretch.from) + least};
-  elapsed_ = {most, pieces_[at_].delay, least};
-  if (!since_told_) {
-    elapsed_ = {stretch.to - begin_ + most, at - begin_ + pieces_[at_].delay,
-                stretch.from - begin_ + least};
-  }
+  elapsed_ = {elapsed_at(stretch.to, most.braking, most.earlier),
+              elapsed_at(at, pieces_[at_].braking, pieces_[at_].earlier),
+              elapsed_at(stretch.from, least.braking, least.earlier)};
+  // A slower motion comes to its places later.
+  const auto told = [&](double t) { return since_told_ ? (t - begin_) / factor_ : 0.0; };
+  clock_ = {begin_ + told(stretch.to) + elapsed_.end, begin_ + told(at) + elapsed_.middle,
+            begin_ + told(stretch.from) + elapsed_.begin};
   if (!may_deviate_) return;
   const std::size_t count = joints_.size();
   for (std::size_t k = 0; k < count; ++k) {

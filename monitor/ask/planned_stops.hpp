@@ -63,9 +63,11 @@ class PlannedStops {
   // A part of a segment, in which the largest speeds count for all stops.
   struct Piece {
     Stretch stretch;
-    double delay = 0.0;    // s: until the robot stands, from each of its places at the latest
     double reach = 0.0;    // s: a stop that begins here goes on for no more of the path
     double braking = 0.0;  // s: until it stands
+    // The same of earlier ones that reach this piece: the latest instant at which they stand, s
+    // since the first waypoint. With since_told_: the longest braking.
+    double earlier = -kInfinity;
   };
   // The places of a joint beside the path, in a stop that begins in a piece.
   struct Box {
@@ -78,7 +80,9 @@ class PlannedStops {
   void add_pieces(const Trajectory& trajectory, const Stretch& stretch, double longest);
   void bound(std::size_t piece) noexcept;
   [[nodiscard]] double time_past_the_end() const noexcept;
-  void note_delays() noexcept;
+  void note_earlier() noexcept;
+  // What elapsed() says for one instant.
+  [[nodiscard]] double elapsed_at(double t, double braking, double earlier) const noexcept;
   void find_pieces(const Stretch& stretch, double at) noexcept;
 
   const Scene& scene_;

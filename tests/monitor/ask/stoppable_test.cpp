@@ -4,6 +4,7 @@
 
 #include "tests/monitor/ask/scara_questions.hpp"
 #include "tests/monitor/ask/stopping_scara.hpp"
+#include "tests/shared/allocation_count.hpp"
 #include "tests/shared/random.hpp"
 #include "tests/shared/repeats.hpp"
 
@@ -134,10 +135,35 @@ TEST(StoppableMotions, AreNearerToWhatMovesUntilTheRobotStands) {
       {.object = "ball", .world_from_object = test::at(2.0 * std::cos(at), 2.0 * std::sin(at), 0)}};
   const Answer answer = answered(scene, question);
   EXPECT_LE(answer.lower, left + 1e-9);
-  // A stop counts at its last place as if it began there.
-  EXPECT_GE(answer.lower, left - 1e-3 - ball * 0.5 * speed / kDeceleration);
+  EXPECT_GE(answer.lower, left - 1.1e-3);
   question.stoppable = false;
   EXPECT_GT(answered(scene, question).lower, left + 0.1);
+}
+
+// Beside a ball that moves at 0.1 m/s, and `left` from the goal.
+void expect_left_after(double seconds, const test::StoppingScara& cell, Question question) {
+  const double left = 0.2, goal = question.motion.positions.back();
+  const double at = goal + test::angle_before(left);
+  test::StoppingScara beside = cell;
+  beside.ball = "max_speed: 0.1, may_jump: true, ";
+  question.poses = {
+      {.object = "ball", .world_from_object = test::at(2.0 * std::cos(at), 2.0 * std::sin(at), 0)}};
+  const Answer answer = answered(scene_of_scara(beside), question);
+  EXPECT_LE(answer.lower, left - 0.1 * seconds + 1e-9);
+  EXPECT_GE(answer.lower, left - 0.1 * seconds - 1.1e-3);
+}
+
+// The shoulder brakes for 0.25 s from each of its speeds.
+TEST(StoppableMotions, AreAtTheirGoalAsLongAsAStopTakesThatBeginsJustBefore) {
+  expect_left_after(0.5 + 0.25, {.shoulder = "time_ms: 250"}, turning_to_rest(0.4, 0.5));
+}
+
+// A stop that begins at 2 rad/s takes 0.5 s and reaches the goal, which the motion reaches slowly.
+TEST(StoppableMotions, AreAtAPlaceAsLongAsAStopTakesThatBeganBeforeIt) {
+  Question question = turning(0.0, 1.0);
+  question.motion.times = {0.0, 0.2, 0.4, 0.41};
+  question.motion.positions = {0.0, 0.4, 0.42, 0.42};
+  expect_left_after(0.2 + 0.5, {}, question);
 }
 
 // A contact that time ends: the robot leaves the ball before that, but not if it is told to stop.
@@ -212,6 +238,23 @@ TEST(StoppableMotions, AreTimedSlowerUntilTheirStopsKeepTheMargin) {
   }
 }
 
+// The ball is where the question has it when the robot is told, and moves from then on.
+TEST(StoppableMotions, AreTimedSlowerForWhatMovesUntilTheyStand) {
+  const double angle = 0.5, speed = 2.0, share = 0.6, margin = 0.05;
+  const double stands = kUntilBrakes + share * speed / kDeceleration;
+  const double at =
+      angle + angle_of_stop(share * speed) + test::angle_before(margin + 0.1 * stands);
+  const Scene scene = scene_of_scara({.ball = "max_speed: 0.1, may_jump: true, "});
+  Question question = turning(angle, speed);
+  question.margins = {margin};
+  question.time_scaling = true;
+  question.poses = {
+      {.object = "ball", .world_from_object = test::at(2.0 * std::cos(at), 2.0 * std::sin(at), 0)}};
+  const TimeScaling scaling = answered(scene, question).scaling;
+  EXPECT_LE(scaling.factor, share + 1e-9);
+  EXPECT_GE(scaling.factor, share - 0.011);
+}
+
 TEST(StoppableMotions, AreNotTimedAtAllIfTheirPathIsTooNear) {
   const Scene scene = scene_of_scara({.at = 0.5});
   Question question = turning(0.5, 1.0);
@@ -224,6 +267,25 @@ TEST(StoppableMotions, AreNotTimedFaster) {
   Question question = turning(0.5, 1.0);
   question.time_scaling = true;
   EXPECT_EQ(answered(scene, question).scaling.factor, 1.0);
+}
+
+TEST(StoppableMotions, GetTheSameBitsWhateverWasAskedBeforeAndAllocateNothing) {
+  const Scene scene = scene_of_scara({.path = test::kLeft, .at = 1.0});
+  Asker asker(scene);
+  Answer first, second, other;
+  Question question = turning(0.5, 2.0), another = turning_to_rest(0.7, 0.6);
+  question.margins = another.margins = {0.0, 0.1};
+  question.time_scaling = another.time_scaling = true;
+  ASSERT_FALSE(asker.ask(question, first));
+  ASSERT_FALSE(asker.ask(another, other));
+  ASSERT_FALSE(asker.ask(question, second));
+  EXPECT_EQ(first.lower, second.lower);
+  EXPECT_EQ(first.upper, second.upper);
+  EXPECT_EQ(first.scaling.factor, second.scaling.factor);
+  const std::uint64_t before = allocations();
+  ASSERT_FALSE(asker.ask(another, second));
+  ASSERT_FALSE(asker.ask(question, second));
+  EXPECT_EQ(allocations(), before);
 }
 
 std::string refusal(const Scene& scene, const Question& question) {

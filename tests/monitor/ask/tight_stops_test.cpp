@@ -24,8 +24,8 @@ namespace {
 using test::kStart, test::kTick;
 
 constexpr double kTotalReaction = 0.051;  // s: stated, and a period
-constexpr double kNear = 0.5;        // m: pairs that are compared are no farther
-constexpr double kFar = 0.1;         // m: that stop farther than this may have any bound above it
+constexpr double kNear = 0.5;             // m: pairs that are compared are no farther
+constexpr double kFar = 0.1;  // m: that stop farther than this may have any bound above it
 
 // A stop of one arm of the cell. The other one stands.
 class StoppingArm {
