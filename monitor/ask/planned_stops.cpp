@@ -8,8 +8,9 @@
 namespace clearance {
 namespace {
 
-// Speeds of cubics count by parts that are no longer than this share of the motion.
-constexpr double kPart = 1.0 / 64.0;
+// Speeds of cubics count by parts that are no longer than this share of the motion. Rounding does
+// not decide whether a sixty-fourth is one.
+constexpr double kPart = 1.01 / 64.0;
 constexpr double kShortestPast = 1e-9;      // s
 constexpr double kShiftRounding = 0x1p-50;  // of a position that is moved, relative
 

@@ -15,7 +15,6 @@ using test::answered;
 using test::scene_of_scara;
 
 constexpr double kUntilBrakes = 0.04;  // s: a stop begins when the robot is told, not with a report
-constexpr double kDeceleration = test::kDeceleration;
 
 // The shoulder rotates by an angle at a constant speed.
 Question turning(double angle, double speed) {
@@ -35,13 +34,13 @@ Question turning_to_rest(double angle, double time) {
 }
 
 double angle_of_stop(double speed) {
-  return speed * kUntilBrakes + 0.5 * speed * speed / kDeceleration;
+  return speed * kUntilBrakes + 0.5 * speed * speed / test::kDeceleration;
 }
 
 // A box counts by its half times the largest distance from the axis, which the finger's radius
 // adds to, and not along its circle.
 double looseness(const std::string& path, double speed) {
-  return 1.1e-3 + (path == test::kLeft ? 0.15 * 0.25 * speed * speed / kDeceleration : 0.0);
+  return 1.1e-3 + (path == test::kLeft ? 0.15 * 0.25 * speed * speed / test::kDeceleration : 0.0);
 }
 
 void expect_verdicts_about(double distance, double looseness, const Scene& scene,
@@ -95,7 +94,8 @@ double farthest(double angle, double time) {
   for (int i = 0; i <= 20'000; ++i) {
     const double u = i / 20'000.0;
     const double speed = angle / time * 6.0 * u * (1.0 - u);
-    most = std::max(most, angle * u * u * (3.0 - 2.0 * u) + 0.5 * speed * speed / kDeceleration);
+    most =
+        std::max(most, angle * u * u * (3.0 - 2.0 * u) + 0.5 * speed * speed / test::kDeceleration);
   }
   return most;
 }
@@ -127,7 +127,7 @@ TEST(StoppableMotions, ThatLeaveWhatIsBehindThemAreFree) {
 // Until the robot stands, the ball moves by its largest speed.
 TEST(StoppableMotions, AreNearerToWhatMovesUntilTheRobotStands) {
   const double ball = 0.1, angle = 0.5, speed = 1.0, left = 0.1;
-  const double stands = angle / speed + kUntilBrakes + speed / kDeceleration;
+  const double stands = angle / speed + kUntilBrakes + speed / test::kDeceleration;
   const double at = angle + angle_of_stop(speed) + test::angle_before(left + ball * stands);
   const Scene scene = scene_of_scara({.ball = "max_speed: 0.1, may_jump: true, "});
   Question question = turning(angle, speed);
@@ -241,7 +241,7 @@ TEST(StoppableMotions, AreTimedSlowerUntilTheirStopsKeepTheMargin) {
 // The ball is where the question has it when the robot is told, and moves from then on.
 TEST(StoppableMotions, AreTimedSlowerForWhatMovesUntilTheyStand) {
   const double angle = 0.5, speed = 2.0, share = 0.6, margin = 0.05;
-  const double stands = kUntilBrakes + share * speed / kDeceleration;
+  const double stands = kUntilBrakes + share * speed / test::kDeceleration;
   const double at =
       angle + angle_of_stop(share * speed) + test::angle_before(margin + 0.1 * stands);
   const Scene scene = scene_of_scara({.ball = "max_speed: 0.1, may_jump: true, "});
