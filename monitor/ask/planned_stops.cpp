@@ -142,7 +142,11 @@ void PlannedStops::bound(std::size_t at) noexcept {
     if (!stops_->keeps_path) {
       box = {-stop.distance(back), stop.distance(forth)};
     } else {
-      piece.reach = std::max(piece.reach, rounded_up(factor_ * stop.longest(fastest)));
+      const bool has_one_speed = is_past_end || range.least == range.most;
+      const double quotient = !has_one_speed  ? stop.longest(fastest)
+                              : fastest > 0.0 ? rounded_up(stop.distance(fastest) / fastest)
+                                              : 0.0;
+      piece.reach = std::max(piece.reach, rounded_up(factor_ * quotient));
     }
     if (!is_past_end || !joints_[k].slides) continue;
     const double length = piece.stretch.to - piece.stretch.from;

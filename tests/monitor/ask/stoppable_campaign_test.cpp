@@ -99,7 +99,7 @@ class MovingMachine {
     const RobotStops& stops = left_.stopping;
     double acts = random_.uniform(begin, end);
     if (random_.chance(0.3))
-      acts = end + (random_.chance(0.5) ? 0.0 : random_.unit() * stops.reaction);
+      acts = end + (random_.chance(0.5) ? 1.0 : random_.unit()) * stops.reaction;
     std::vector<double> at = resting_, speeds;
     double in_proportion = 0.0, longest = 0.0;
     for (std::size_t k = 0; k < motion.joints.size(); ++k) {
