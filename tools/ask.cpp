@@ -44,12 +44,14 @@ A motion is a JSON object:
               up to this time and until the two may be this far apart; without it those of the cell that no clock ends
   profile     true, or {"pair": ["A", "B"], "tolerance": m, "points": N}: the distance over time
   time_scaling  true: the largest factor by which the motion may be timed faster so that S_p of zones holds
+  stoppable   true: bounds and margins count stops that begin at any instant of the motion, too, as the cell states
+              stopping for its robot; time_scaling keeps the margins as well, and tries no factor above 1
 An answer has id; lower, upper: bounds of the least distance over the whole motion, m (0 where bodies overlap);
 t, pair, points: where upper is attained (points in the world); for each margin a verdict, free, below or
 undecided, and first_below: null if free, {"t": [from, to], "pair"} if below. The distance is at least the margin
 at all instants before `from`, and below it at `to`. An undecided margin has "above_until" instead of [from, to].
 profile is a list of {"t": [from, to], "lower", "upper", "pair"} that covers the motion; time_scaling has factor,
-factor_above (no larger one is admissible; null: no limit), t, pair, zone.
+factor_above (no larger one is admissible; null: no limit), t, pair, zone (null: a margin that a stop does not keep).
 A line that cannot be answered gets {"line": n, "error": "..."}, and the other lines are answered.)";
 
 constexpr const char* kExample =
@@ -127,6 +129,8 @@ int main(int argc, char** argv) {
        clearance::number_from_zero()},
       {"--others-still", &options.others_still,
        "Objects that are neither fixed nor part of a robot do not move"},
+      {"--stoppable", &options.stoppable,
+       "Bounds and margins count stops that begin at any instant of a motion, too"},
       {"--verdicts", &options.only_verdicts,
        "Only the verdicts of margins; lower and first_below are then as good as these needed"},
       {"--repeat", &options.repeat, "Ask N times, for the times on stderr",

@@ -74,11 +74,11 @@ void Posture::free_carriers(const Question& question) {
 // A link counts for the question if something states its motion: or if nothing may move it.
 void Posture::note_free() {
   const auto deviates = [](const FreeVariable& free) { return free.speed > 0.0; };
-  any_free_ = std::ranges::any_of(free_variables_, deviates);
+  any_free_ = std::ranges::any_of(free_variables_, deviates) || stops_.may_deviate();
   std::fill(freedom_.begin(), freedom_.end(), Nearing());
   std::fill(is_of_question_.begin(), is_of_question_.end(), std::uint8_t{1});
-  std::fill(may_deviate_.begin(), may_deviate_.end(), std::uint8_t{0});
-  if (free_variables_.empty()) return;
+  std::fill(may_deviate_.begin(), may_deviate_.end(), Deviates::kNot);
+  if (free_variables_.empty() && !stops_.may_deviate()) return;
   is_free_.assign(bounds_.size(), 0);
   is_stated_.assign(bounds_.size(), 0);
   for (const FreeVariable& free : free_variables_) is_free_[free.variable] = 1;
@@ -96,21 +96,26 @@ void Posture::note_free() {
       free = free || is_free_[v] != 0;
       stated = stated || is_stated_[v] != 0;
     });
-    may_deviate_[i] = free && any_free_;
+    if (free && any_free_)
+      may_deviate_[i] = Deviates::kByAssumption;
+    else if (stated && stops_.may_deviate())
+      may_deviate_[i] = Deviates::kByStop;
     is_of_question_[i] = stated || !free;
   }
 }
 
 void Posture::note_freedom(const Stretch& stretch, double at) noexcept {
-  const double begin = trajectory_.begin();
+  const Instants since = elapsed(stretch, at);
+  if (stops_.may_deviate()) std::ranges::fill(freedom_, Nearing());
   for (const FreeVariable& free : free_variables_) {
     const auto until = [&](double t) {
-      const double since = t - begin + free.age;
-      return since > 0.0 ? std::min(free.most, free.speed * since) : 0.0;
+      const double aged = t + free.age;
+      return aged > 0.0 ? std::min(free.most, free.speed * aged) : 0.0;
     };
-    freedom_[free.variable] = {rounded_up(until(stretch.to)), rounded_down(until(at)),
-                               rounded_down(until(stretch.from))};
+    freedom_[free.variable] = {rounded_up(until(since.end)), rounded_down(until(since.middle)),
+                               rounded_down(until(since.begin))};
   }
+  if (stops_.counts() && stops_.may_deviate()) stops_.add_deviations(freedom_);
 }
 
 double Posture::carrier_rounding(const Sphere& sphere, std::uint32_t base) const noexcept {

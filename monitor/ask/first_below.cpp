@@ -74,13 +74,14 @@ void MotionSearch::decide_margins() {
 }
 
 void MotionSearch::decide(MarginAnswer& answer) noexcept {
-  if (!answer_->has_pair || proves(answer_->lower, answer.margin)) {
+  if (!answer_->has_pair || (!only_stops_ && proves(answer_->lower, answer.margin))) {
     answer.verdict = Verdict::kFree;
     return;
   }
   const Stretch whole = posture_.trajectory().whole();
   answer.above_until = whole.from;
-  const bool any_pair_counts = question_->only_verdicts && contacts_.empty() && exempt_.empty();
+  const bool any_pair_counts =
+      question_->only_verdicts && !only_stops_ && contacts_.empty() && exempt_.empty();
   if (any_pair_counts && is_below(answer_->upper, answer.margin)) {
     answer.verdict = Verdict::kBelow;
     answer.below_at = answer_->time;
@@ -134,7 +135,7 @@ void MotionSearch::find_first(const Stretch& stretch, const OpenList& list,
     for (std::uint32_t i = 0; i < open_[k].count; ++i) {
       const std::uint32_t pair = order[i];
       const Pair at = pair_at(pair, motion);
-      const double limit = limit_until(stretch.to, pair, answer.margin);
+      const double limit = limit_until(stretch.to, false, pair, answer.margin);
       if (limit == -kInfinity) continue;
       const double enough = limit != 0.0 ? limit : 1e-300;
       double apart = gap(at, pair, rounded_up(enough + at.loss));
@@ -156,7 +157,7 @@ void MotionSearch::find_first(const Stretch& stretch, const OpenList& list,
             nearing < kInfinity ? rounded_up(found.upper + motion.error - nearing) : -kInfinity;
         note_upper(found, std::max(0.0, upper), middle, pair);
         if (proves(lower, limit)) continue;
-        below = is_below(upper, limit_until(middle, pair, answer.margin));
+        below = is_below(upper, limit_until(middle, true, pair, answer.margin));
         near = !below && lower >= limit - question_->margin_tolerance &&
                upper <= limit + question_->margin_tolerance;
         // No division helps where the distance at the middle itself is not known well enough.

@@ -82,10 +82,10 @@ bool MotionSearch::stays_near(const Stretch& stretch, std::uint32_t contact) noe
   const double begin = posture_.trajectory().begin();
   const auto end_here = [&] {
     // At the first waypoint it may have ended.
-    meant.until = std::min(meant.until, stretch.from > begin ? stretch.from : -kInfinity);
+    meant.near_until = std::min(meant.near_until, stretch.from > begin ? stretch.from : -kInfinity);
     return false;
   };
-  if (stretch.from > meant.until) return true;
+  if (stretch.from > std::min(meant.until, meant.near_until)) return true;
   if (is_exhausted()) {
     answer_->within_work_limit = false;
     return end_here();

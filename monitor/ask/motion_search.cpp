@@ -235,6 +235,7 @@ void MotionSearch::note_pair(std::uint32_t pair, std::uint32_t& first,
 
 void MotionSearch::note_upper(const PairAtMiddle& found, double upper, double at,
                               std::uint32_t pair) noexcept {
+  if (only_stops_) return;
   const double open = 2.0 * bundle_of(pair).model_error;
   Least& least = least_of(pair);
   least.reached = std::min(least.reached, open == 0.0 ? upper : rounded_up(upper - open));

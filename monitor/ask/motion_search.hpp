@@ -97,6 +97,7 @@ class MotionSearch {
     std::uint32_t first = 0, second = 0;
     double least_allowed = 0.0;                      // m: minus the depth
     double until = kInfinity, distance = kInfinity;  // s, m: its ends
+    double near_until = kInfinity;                   // s: the instant at which its distance ends it
   };
   // What is known of the least distance: of all pairs, or of one pair of objects.
   struct Least {
@@ -164,13 +165,16 @@ class MotionSearch {
   void take_contacts_of_scene();
   void end_contacts() noexcept;
   [[nodiscard]] bool stays_near(const Stretch& stretch, std::uint32_t contact) noexcept;
-  // The distance that a pair has to keep up to an instant, m: a margin, or less for a contact.
-  [[nodiscard]] double limit_until(double instant, std::uint32_t pair,
+  // The distance that a pair has to keep up to an instant of a placed stretch, its end or its
+  // middle, m: a margin, or less for a contact.
+  [[nodiscard]] double limit_until(double instant, bool is_middle, std::uint32_t pair,
                                    double margin) const noexcept {
     if (!exempt_.empty() && exempt_[pair] != 0) return -kInfinity;
     if (contacts_.empty() || contact_of_[pair] == kNotMeant) return margin;
     const Meant& meant = contacts_[contact_of_[pair]];
-    return instant <= meant.until ? meant.least_allowed : margin;
+    const bool is_allowed =
+        instant <= meant.near_until && posture_.latest(instant, is_middle) <= meant.until;
+    return is_allowed ? meant.least_allowed : margin;
   }
 
   // The margins (first_below.cpp).
@@ -192,8 +196,10 @@ class MotionSearch {
   void collect_separated();
   [[nodiscard]] std::optional<std::string> fault_of_scaling() const;
   [[nodiscard]] std::uint32_t limited_robot(std::uint32_t separated) const noexcept;
-  void scale_time() noexcept;
+  void scale_time();
   void scale(const Stretch& stretch, std::size_t count, double known) noexcept;
+  void scale_stops();
+  [[nodiscard]] Verdict stops_scaled(double factor, MarginAnswer& limit);
 
   const Scene& scene_;
   Posture posture_;
@@ -225,6 +231,8 @@ class MotionSearch {
   bool found_ = false;                  // an instant below the margin is known
   bool uncertain_ = false;              // a stretch is known that is not proven to be above
   double proven_until_ = 0.0;           // s: before this, a larger margin was proven
+  // Margins are of stops at lower speeds, so that the bounds of the answer are not theirs.
+  bool only_stops_ = false;
 };
 
 }  // namespace clearance

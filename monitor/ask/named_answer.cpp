@@ -56,7 +56,7 @@ void name_answer(const Answer& answer, const Question& question, const Scene& sc
     if (scaling.factor_above < kInfinity) {
       limit.first = name(scaling.first);
       limit.second = name(scaling.second);
-      limit.zone = scene.zones[scaling.zone].name;
+      if (scaling.zone != TimeScaling::kNoZone) limit.zone = scene.zones[scaling.zone].name;
     }
   }
   result.within_work_limit = answer.within_work_limit;

@@ -42,6 +42,7 @@ Posture::Posture(const Scene& scene)
       placed_at_(parts_.size(), 0),
       chains_(scene, radii_of(scene, parts_)),
       trajectory_(scene.variables.size()),
+      stops_(scene),
       variables_(scene.variables.size()),
       bounds_(scene.variables.size() + 2 * scene.robots.size()),
       kinematics_(scene.robots),
@@ -60,7 +61,7 @@ Posture::Posture(const Scene& scene)
       approaches_(scene.objects.size()),
       freedom_(bounds_.size()),
       is_of_question_(scene.objects.size(), 1),
-      may_deviate_(scene.objects.size(), 0),
+      may_deviate_(scene.objects.size(), Deviates::kNot),
       contents_(scene.sensors.size()) {
   free_variables_.reserve(bounds_.size());
   for (std::uint32_t r = 0; r < scene.robots.size(); ++r) {
@@ -87,6 +88,7 @@ Posture::Posture(const Scene& scene)
 
 std::optional<std::string> Posture::take(const Question& question) {
   if (auto text = trajectory_.take(question, scene_)) return text;
+  if (auto text = stops_.take(question, trajectory_)) return text;
   if (auto text = take_joints(question)) return text;
   if (auto text = take_poses(question)) return text;
   if (auto text = take_motions(question)) return text;
@@ -335,6 +337,7 @@ void Posture::place_bases() noexcept {
 
 void Posture::place(const Stretch& stretch, double at) noexcept {
   trajectory_.place(stretch, at, variables_, bounds_);
+  if (stops_.counts()) stops_.place(stretch, at, variables_);
   if (!free_.empty()) place_free_objects(stretch, at);
   if (!moving_objects_.empty()) place_carriers();
   kinematics_.place(variables_, bases_, is_placed_ ? moves_ : std::span<const std::uint8_t>());
@@ -344,14 +347,20 @@ void Posture::place(const Stretch& stretch, double at) noexcept {
   ++instant_;
 }
 
-void Posture::place_free_objects(const Stretch& stretch, double at) noexcept {
+Instants Posture::elapsed(const Stretch& stretch, double at) const noexcept {
+  if (stops_.counts()) return stops_.elapsed();
   const double begin = trajectory_.begin();
+  return {stretch.to - begin, at - begin, stretch.from - begin};
+}
+
+void Posture::place_free_objects(const Stretch& stretch, double at) noexcept {
+  const Instants since = elapsed(stretch, at);
   for (const std::uint32_t i : free_) {
     if (speed_[i] == 0.0) continue;
     ObjectApproach& approach = approaches_[i];
-    approach.nearing = {rounded_up(swept(speed_[i], stretch.to - begin + age_[i])),
-                        rounded_down(swept(speed_[i], at - begin + age_[i])),
-                        rounded_down(swept(speed_[i], stretch.from - begin + age_[i]))};
+    approach.nearing = {rounded_up(swept(speed_[i], since.end + age_[i])),
+                        rounded_down(swept(speed_[i], since.middle + age_[i])),
+                        rounded_down(swept(speed_[i], since.begin + age_[i]))};
   }
   moving_.place(stretch, at);
   for (const ObjectState& state : moving_.states()) {

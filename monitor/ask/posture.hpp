@@ -13,6 +13,7 @@
 #include "config/scene/scene.hpp"
 #include "monitor/ask/chains.hpp"
 #include "monitor/ask/moving_objects.hpp"
+#include "monitor/ask/planned_stops.hpp"
 #include "monitor/ask/trajectory.hpp"
 #include "monitor/bodies/forward_kinematics.hpp"
 #include "monitor/bodies/posed_part.hpp"
@@ -59,9 +60,21 @@ class Posture {
   [[nodiscard]] const CloudPairs::Content& content(std::uint32_t object) const noexcept {
     return contents_[scene_.objects[object].sensor];
   }
-  // Something that no motion is stated for moves this link.
+  // Something that no motion is stated for moves this link, or a stop does that leaves the path.
   [[nodiscard]] bool may_deviate(std::uint32_t object) const noexcept {
-    return may_deviate_[object] != 0;
+    return may_deviate_[object] != Deviates::kNot;
+  }
+  [[nodiscard]] bool may_deviate_by_assumption(std::uint32_t object) const noexcept {
+    return may_deviate_[object] == Deviates::kByAssumption;
+  }
+  // The stops that a question with `stoppable` counts: after take(), those of the motion as timed.
+  [[nodiscard]] PlannedStops& stops() noexcept { return stops_; }
+  void count_stops(double factor) noexcept { stops_.count_scaled(factor, trajectory_); }
+  // The latest instant, on the clock of the waypoints, at which bodies may be at places of a
+  // stretch up to `instant`: after place(), the end of its stretch or the middle.
+  [[nodiscard]] double latest(double instant, bool is_middle) const noexcept {
+    if (!stops_.counts()) return instant;
+    return is_middle ? stops_.clock().middle : stops_.clock().end;
   }
   // The rounding of the motion of a sphere at a link relative to the base, m, by stated motions of
   // what their robots stand on.
@@ -98,6 +111,7 @@ class Posture {
   [[nodiscard]] std::optional<std::string> take_joints(const Question& question);
   [[nodiscard]] std::optional<std::string> hold(const HeldJoint& held);
   [[nodiscard]] std::optional<std::string> set_deviations();
+  [[nodiscard]] Instants elapsed(const Stretch& stretch, double at) const noexcept;
   [[nodiscard]] std::optional<std::string> set_free(const StatedJoint& stated, OthersMove others);
   [[nodiscard]] std::optional<std::string> set_variable(const std::string& name, double position,
                                                         std::uint32_t& variable);
@@ -132,6 +146,7 @@ class Posture {
   std::uint64_t instant_ = 0;
   Chains chains_;
   Trajectory trajectory_;
+  PlannedStops stops_;
   std::vector<TrackedVariable> variables_;
   std::vector<VariableBounds> bounds_;
   ForwardKinematics kinematics_;
@@ -161,8 +176,10 @@ class Posture {
   std::vector<std::uint8_t> is_free_, is_stated_;  // by variable: while note_free() runs
   std::vector<Nearing> freedom_;
   bool any_free_ = false;
-  std::vector<std::uint8_t> is_of_question_, may_deviate_;  // by object
-  std::vector<CloudPairs::Content> contents_;               // by sensor
+  enum class Deviates : std::uint8_t { kNot, kByStop, kByAssumption };
+  std::vector<std::uint8_t> is_of_question_;   // by object
+  std::vector<Deviates> may_deviate_;          // by object
+  std::vector<CloudPairs::Content> contents_;  // by sensor
   double carrier_extent_ = 0.0;  // m: the sum of the largest positions of moving carriers
 };
 

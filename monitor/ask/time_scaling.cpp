@@ -58,7 +58,7 @@ std::uint32_t MotionSearch::limited_robot(std::uint32_t separated) const noexcep
 std::optional<std::string> MotionSearch::fault_of_scaling() const {
   for (std::uint32_t i = 0; i < separated_.size(); ++i) {
     const std::uint32_t robot = limited_robot(i);
-    if (posture_.is_of_question(robot) && posture_.may_deviate(robot)) {
+    if (posture_.is_of_question(robot) && posture_.may_deviate_by_assumption(robot)) {
       return "\"" + scene_.objects[robot].name +
              "\" may move by its assumed speed: a motion is timed only if the question states that "
              "of all that moves the robot";
@@ -67,7 +67,7 @@ std::optional<std::string> MotionSearch::fault_of_scaling() const {
   return std::nullopt;
 }
 
-void MotionSearch::scale_time() noexcept {
+void MotionSearch::scale_time() {
   TimeScaling& scaling = answer_->scaling;
   std::size_t count = 0;
   for (std::uint32_t i = 0; i < separated_.size(); ++i) {
@@ -76,12 +76,61 @@ void MotionSearch::scale_time() noexcept {
         posture_.is_of_question(limited_robot(i)))
       scaled_[count++] = i;
   }
-  scaling.is_limited = count > 0;
-  if (count == 0) return;
-  for (std::uint32_t i = 0; i < posture_.trajectory().segments(); ++i) {
-    scale(posture_.trajectory().segment(i), count, 0.0);
-  }
+  scaling.is_limited = count > 0 || question_->stoppable;
+  posture_.stops().count_none();
+  const Trajectory& trajectory = posture_.trajectory();
+  if (trajectory.planned_segments() == 0)
+    scale({0, 0, trajectory.begin(), trajectory.begin()}, count, 0.0);
+  for (std::uint32_t i = 0; i < trajectory.planned_segments(); ++i)
+    scale(trajectory.segment(i), count, 0.0);
   scaling.factor = std::min(scaling.factor, scaling.factor_above);
+  if (question_->stoppable) scale_stops();
+}
+
+// A slower motion has shorter stops: so what holds at a factor holds at all lower ones.
+void MotionSearch::scale_stops() {
+  TimeScaling& scaling = answer_->scaling;
+  only_stops_ = true;
+  double least = 0.0, most = std::min(1.0, scaling.factor);
+  double next = most;
+  while (most - least > question_->scaling_tolerance * most && most > kLeastFactor) {
+    MarginAnswer limit;
+    const Verdict verdict = stops_scaled(next, limit);
+    if (verdict == Verdict::kBelow && next < scaling.factor_above) {
+      scaling.factor_above = next;
+      scaling.time = limit.below_at;
+      scaling.first = limit.first;
+      scaling.second = limit.second;
+      scaling.zone = TimeScaling::kNoZone;
+    }
+    (verdict == Verdict::kFree ? least : most) = next;
+    next = 0.5 * (least + most);
+  }
+  scaling.factor = least;
+  only_stops_ = false;
+  posture_.stops().count_none();
+}
+
+// The verdict of the margins of which none is free, or the last one's.
+Verdict MotionSearch::stops_scaled(double factor, MarginAnswer& limit) {
+  posture_.count_stops(factor);
+  const auto is_free = [&](double margin) {
+    proven_until_ = posture_.trajectory().begin();
+    limit = {.margin = margin};
+    decide(limit);
+    return limit.verdict == Verdict::kFree;
+  };
+  bool all = true;
+  for (std::size_t i = 0; all && i < question_->margins.size(); ++i) {
+    exempt_kept(question_->margins[i]);
+    all = is_free(question_->margins[i]);
+  }
+  for (std::size_t i = 0; all && i < question_->margins_between.size(); ++i) {
+    exempt_all_but(question_->margins_between[i]);
+    all = is_free(question_->margins_between[i].margin);
+  }
+  exempt_.clear();
+  return all ? Verdict::kFree : limit.verdict;
 }
 
 // `known`: a lower bound of the factor in a longer stretch.

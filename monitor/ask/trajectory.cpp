@@ -144,6 +144,54 @@ void Trajectory::make_timeline(const Question& question) {
   for (const Track& track : tracks_) find_rows(times_, track.motion->times, rows_[track.rows_of]);
 }
 
+void Trajectory::go_on(double time, std::span<const double> velocities) {
+  Track& track = tracks_.front();
+  const double end = track.motion->times.back();
+  if (!track.onward.empty()) times_.pop_back();
+  // A motion of one waypoint has one segment already.
+  const bool adds_segment = track.onward.empty() && times_.size() > 1;
+  for (const Track& each : tracks_)
+    if (adds_segment) rows_[each.rows_of].push_back(each.last_row());
+  track.onward = velocities;
+  track.onward_time = time;
+  times_.push_back(end + time);
+  for (std::size_t joint = 0; joint < track.joints; ++joint)
+    largest_position_ =
+        std::max(largest_position_, std::abs(track.position(track.rows() - 1, joint)));
+  position_rounding_ =
+      (track.is_cubic() ? kCubicPositionRounding : kLinearRounding) * largest_position_;
+}
+
+// The velocity is quadratic in time.
+VelocityRange Trajectory::velocities(std::size_t joint, const Stretch& stretch) const noexcept {
+  const Track& track = tracks_.front();
+  const std::int32_t row = rows_[track.rows_of][stretch.first];
+  const State from = state(track, row, joint, stretch.from);
+  const State to = state(track, row, joint, stretch.to);
+  VelocityRange range{std::min(from.speed, to.speed), std::max(from.speed, to.speed)};
+  if (from.acceleration == 0.0 && from.jerk == 0.0) return range;
+  if (from.acceleration * to.acceleration < 0.0) {
+    const double turn = from.speed - 0.5 * from.acceleration * (from.acceleration / from.jerk);
+    range = {std::min(range.least, turn), std::max(range.most, turn)};
+  }
+  const double size = std::max(range.largest_speed(), std::abs(from.speed));
+  const double rounding =
+      kCubicRounding * largest_position_ / length_of(track, row) + kTrajectoryRounding * size;
+  return {range.least - rounding, range.most + rounding};
+}
+
+double Trajectory::last_velocity(std::size_t joint) const noexcept {
+  const Track& track = tracks_.front();
+  const std::vector<double>& times = track.motion->times;
+  if (!track.motion->velocities.empty()) return track.velocity(times.size() - 1, joint);
+  for (std::size_t row = times.size() - 1; row > 0; --row) {
+    if (times[row] == times[row - 1]) continue;
+    return (track.position(row, joint) - track.position(row - 1, joint)) /
+           (times[row] - times[row - 1]);
+  }
+  return 0.0;
+}
+
 Stretch Trajectory::whole() const noexcept { return {0, segments() - 1, begin(), end()}; }
 
 double Trajectory::middle(const Stretch& stretch) const noexcept {
@@ -168,7 +216,11 @@ Trajectory::State Trajectory::state(const Track& track, std::int32_t row, std::s
   if (row < 0) return {track.position(0, joint), 0.0, 0.0, 0.0};
   const auto r = static_cast<std::size_t>(row);
   const double p0 = track.position(r, joint);
-  if (r + 1 >= times.size()) return {p0, 0.0, 0.0, 0.0};
+  if (r + 1 >= times.size()) {
+    if (track.onward.empty()) return {p0, 0.0, 0.0, 0.0};
+    const double since = std::clamp(at - times[r], 0.0, track.onward_time);
+    return {p0 + since * track.onward[joint], track.onward[joint], 0.0, 0.0};
+  }
   const double length = times[r + 1] - times[r];
   const double t = std::clamp(at - times[r], 0.0, length), u = t / length;
   const double step = track.position(r + 1, joint) - p0, rate = step / length;
@@ -182,17 +234,16 @@ Trajectory::State Trajectory::state(const Track& track, std::int32_t row, std::s
 
 double Trajectory::largest_acceleration(const Track& track, std::int32_t row,
                                         std::size_t joint) noexcept {
-  const std::vector<double>& times = track.motion->times;
   const auto r = static_cast<std::size_t>(row);
-  return std::max(std::abs(state(track, row, joint, times[r]).acceleration),
-                  std::abs(state(track, row, joint, times[r + 1]).acceleration));
+  return std::max(std::abs(state(track, row, joint, track.time(r)).acceleration),
+                  std::abs(state(track, row, joint, track.time(r + 1)).acceleration));
 }
 
 // A function whose second derivative is at most a leaves its chord by at most a length^2 / 8.
 double Trajectory::bulge(const Track& track, std::int32_t row, std::size_t joint) noexcept {
   if (!track.is_cubic()) return 0.0;
   const auto r = static_cast<std::size_t>(row);
-  const double length = track.motion->times[r + 1] - track.motion->times[r];
+  const double length = track.time(r + 1) - track.time(r);
   if (length == 0.0) return 0.0;
   return 0.125 * length * length * largest_acceleration(track, row, joint);
 }
@@ -224,9 +275,7 @@ void Trajectory::place_in_segment(const Track& track, const Stretch& stretch, do
     bound.acceleration = 0.0;
     if (now.jerk != 0.0 || now.acceleration != 0.0 || now.speed != 0.0) {
       // The acceleration is linear in time, so it is largest at an end.
-      const std::vector<double>& times = track.motion->times;
-      const double length =
-          times[static_cast<std::size_t>(row) + 1] - times[static_cast<std::size_t>(row)];
+      const double length = length_of(track, row);
       const double rounding = track.is_cubic() ? kCubicRounding * largest_position_ / length : 0.0;
       bound.speed += rounding;
       bound.acceleration =
@@ -244,7 +293,7 @@ void Trajectory::place_at_waypoint(const Track& track, const Stretch& stretch, d
                                    std::span<TrackedVariable> variables,
                                    std::span<VariableBounds> bounds) const noexcept {
   const std::vector<std::int32_t>& rows = rows_[track.rows_of];
-  const auto rows_of_motion = static_cast<std::int32_t>(track.motion->times.size());
+  const auto rows_of_motion = static_cast<std::int32_t>(track.rows());
   const std::int32_t now_row = rows[segment_at_middle(stretch)];
   const std::int32_t from = std::max(0, rows[stretch.first]);
   const std::int32_t to = std::min(rows_of_motion - 1, rows[stretch.last] + 1);

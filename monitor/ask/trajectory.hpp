@@ -4,6 +4,7 @@
 // new segment of it begins wherever one of them, or an object's motion, has a waypoint.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstdint>
 #include <optional>
@@ -32,6 +33,13 @@ struct VariableBounds {
   double acceleration = 0.0;  // at most, per second squared; only in one segment
 };
 
+// Velocities of a joint, per second.
+struct VelocityRange {
+  double least = 0.0, most = 0.0;
+
+  [[nodiscard]] double largest_speed() const noexcept { return std::max(-least, most); }
+};
+
 // The row of a track's waypoints that begins in or before a segment of the timeline.
 inline constexpr std::int32_t kBeforeFirstRow = -1;
 
@@ -47,6 +55,18 @@ class Trajectory {
   // Takes the trajectories of a question, or returns what is wrong with them. The question must
   // stay until the next call. Allocates only for more waypoints than in any question before.
   [[nodiscard]] std::optional<std::string> take(const Question& question, const Scene& scene);
+
+  // Lets the joints of the motion in question go on past its last waypoint for a time, s, with
+  // these velocities, one for each joint. That is a further segment. The velocities must stay.
+  void go_on(double time, std::span<const double> velocities);
+  // The segments of the motion itself.
+  [[nodiscard]] std::uint32_t planned_segments() const noexcept {
+    return segments() - (tracks_.front().onward.empty() ? 0 : 1);
+  }
+  // In a stretch of one segment, the velocities of a joint of the motion in question.
+  [[nodiscard]] VelocityRange velocities(std::size_t joint, const Stretch& stretch) const noexcept;
+  // As they are at its last waypoint.
+  [[nodiscard]] double last_velocity(std::size_t joint) const noexcept;
 
   [[nodiscard]] std::span<const double> times() const noexcept { return times_; }
   [[nodiscard]] Stretch whole() const noexcept;
@@ -111,10 +131,24 @@ class Trajectory {
     const JointTrajectory* motion = nullptr;
     std::uint32_t first_joint = 0, joints = 0;  // into moved_
     std::uint32_t rows_of = 0;                  // into rows_
+    // By joint, per second: past the last waypoint it goes on to a further row. Empty: it rests.
+    std::span<const double> onward = {};
+    double onward_time = 0.0;  // s
+    [[nodiscard]] std::int32_t last_row() const noexcept {
+      return static_cast<std::int32_t>(motion->times.size()) - 1;
+    }
+    [[nodiscard]] std::size_t rows() const noexcept {
+      return motion->times.size() + (onward.empty() ? 0 : 1);
+    }
+    [[nodiscard]] double time(std::size_t row) const noexcept {
+      return row < motion->times.size() ? motion->times[row] : motion->times.back() + onward_time;
+    }
     [[nodiscard]] bool is_cubic() const noexcept {
       return !motion->velocities.empty() && motion->times.size() > 1;
     }
     [[nodiscard]] double position(std::size_t row, std::size_t joint) const noexcept {
+      if (row == motion->times.size())
+        return position(row - 1, joint) + onward_time * onward[joint];
       return motion->positions[row * joints + joint];
     }
     [[nodiscard]] double velocity(std::size_t row, std::size_t joint) const noexcept {
@@ -129,6 +163,11 @@ class Trajectory {
   void make_timeline(const Question& question);
   [[nodiscard]] static State state(const Track& track, std::int32_t row, std::size_t joint,
                                    double at) noexcept;
+  // From a row to the next one, s.
+  [[nodiscard]] static double length_of(const Track& track, std::int32_t row) noexcept {
+    const auto r = static_cast<std::size_t>(row);
+    return track.time(r + 1) - track.time(r);
+  }
   [[nodiscard]] static double largest_acceleration(const Track& track, std::int32_t row,
                                                    std::size_t joint) noexcept;
   // The largest distance of a cubic beside a waypoint from its chord; linear: 0.

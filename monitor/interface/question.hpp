@@ -136,6 +136,9 @@ struct Question {
   // into force then. `lower`, `upper` and the profile count these pairs like others.
   std::optional<std::vector<MeantContact>> contacts;
   OthersMove others = OthersMove::kWithinMaxSpeed;
+  // The robot may be told to stop at any instant of the motion. All bounds and margins then count
+  // where it may be until it stands (monitor/ask/STOPS.md), and no other motion is stated.
+  bool stoppable = false;
   // m, from 0 on. A margin counts for all pairs but those that a robot's own build keeps nearer in
   // every posture (monitor/pairs/kept_near.hpp).
   std::vector<double> margins = {0.0};
@@ -187,16 +190,19 @@ struct ProfilePoint {
 
 // The speed that zones with `separation` admit. README.md, "Time scaling", has the assumptions.
 struct TimeScaling {
-  bool is_limited = false;  // such a zone has a pair with a robot of the question
+  // Such a zone has a pair with a robot of the question, or the motion has to be stoppable.
+  bool is_limited = false;
   // The motion may be timed faster by this, above 1, or has to be timed slower, below 1: at it and
   // at all factors below, S_p holds at all instants. 0: a zone's S_p exceeds the distance even for
-  // robots that stand. Infinity: no speed of these robots is too large.
+  // robots that stand. Infinity: no speed of these robots is too large. With `stoppable`, stops of
+  // the motion keep all margins of the question as well, and no factor above 1 is tried.
   double factor = kInfinity;
-  // At a larger factor than this, S_p does not hold at the instant `time`, s.
+  // At a larger factor than this, S_p or a margin does not hold at the instant `time`, s.
   double factor_above = kInfinity;
   double time = 0.0;
   std::uint32_t first = 0, second = 0;  // the pair that limits it; Scene::objects
-  std::uint32_t zone = 0;               // Scene::zones
+  static constexpr std::uint32_t kNoZone = ~0u;
+  std::uint32_t zone = 0;  // Scene::zones; kNoZone: a margin that a stop does not keep limits it
 };
 
 // Objects are indices into Scene::objects. New objects of Question::payloads follow these, in the

@@ -205,6 +205,7 @@ std::variant<MotionQuestion, MalformedField> from_wire(const clearance_msg_Quest
   question.only_margins = message.only_margins;
   read_profile(message, read, question);
   question.time_scaling = message.time_scaling;
+  question.stoppable = message.stoppable;
   question.work_limit = message.work_limit;
   if (auto fault = std::move(read).fault()) return *std::move(fault);
   return asked;
@@ -288,6 +289,7 @@ Sample<clearance_msg_Question> to_wire(const MotionQuestion& asked) {
   put_value(profile.first, message->profile_first);
   put_value(profile.second, message->profile_second);
   message->time_scaling = question.time_scaling;
+  message->stoppable = question.stoppable;
   message->work_limit = question.work_limit;
   return message;
 }

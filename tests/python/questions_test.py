@@ -84,6 +84,25 @@ def test_an_object_comes_nearer_by_its_largest_speed_unless_it_is_still(planar):
     assert slow.lower == pytest.approx(5.0 - 0.35 - 4.5, abs=2e-3)
 
 
+# The motion ends at 0.5 rad/s. The shoulder goes on for 0.2 s, and the ball comes nearer until then.
+def test_a_stoppable_motion_counts_stops_from_any_instant(planar, planar_file):
+    motion = dict(joints=["shoulder"], times=[0.0, 1.0], positions=[[-1.0], [-0.5]], **REST)
+    with pytest.raises(ValueError, match='robot "arm" states no stopping'):
+        planar.ask(Question(**motion, stoppable=True))
+    stops = "stopping: {reaction_ms: 40, path: kept, time_ms: 160}"
+    planar_file.write_text(planar_file.read_text().replace("planar.urdf}", f"planar.urdf, {stops}}}"))
+    cell = clearance.Cell(planar_file)
+    asked = cell.ask(Question(**motion, margins=[1.1], tolerance=1e-9))
+    assert asked.upper == pytest.approx(2.9 - 2 * math.cos(0.5), abs=1e-8) and asked.is_free(1.1)
+    stoppable = cell.ask(Question(**motion, margins=[1.1], tolerance=1e-9, stoppable=True, time_scaling=True))
+    assert stoppable.upper == pytest.approx(2.9 - 2 * math.cos(0.5 - 0.5 * 0.2), abs=1e-8)
+    assert stoppable.margins[0].verdict is Verdict.BELOW
+    limit = stoppable.time_limit
+    assert limit.is_limited and limit.zone == "" and 0 < limit.factor < limit.factor_above < 1
+    slower = dict(motion, times=[0.0, 1.0 / limit.factor])
+    assert cell.ask(Question(**slower, margins=[1.1], stoppable=True)).is_free(1.1)
+
+
 def test_an_age_widens_and_a_meant_contact_keeps_the_margin(planar):
     at = dict(held={"elbow": 0.0}, poses={"ball": [2.0, 5.0, 0, 0, 0, 0, 1]})
     rest = dict(joints=["shoulder"], times=[0.0, 0.005], positions=[[0.0], [0.0]])

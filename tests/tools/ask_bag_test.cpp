@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
@@ -233,6 +234,38 @@ TEST_F(AskOfABag, TakesWhatACameraSawBeforeTheMotion) {
   EXPECT_NEAR(answers[0]["upper"], 0.1 - 0.05 - 0.002, 1e-3) << answers[0];
   EXPECT_NEAR(answers[1]["upper"], 0.3 - 0.05 - 0.002, 1e-3) << answers[1];
   EXPECT_EQ(answers[0]["pair"], (nlohmann::json{"eye", "finger"}));
+}
+
+// The motion ends at 0.8 rad/s, 0.1 s before the shoulder would stand.
+TEST_F(AskOfABag, CountsStopsIfItsMotionsHaveToBeStoppable) {
+  const std::vector<RosMessage> bag = {
+      joint_state(kSecondNs, kSecondNs, kRest),
+      trajectory(2 * kSecondNs, {"shoulder"}, {{0.0, {-1.0}}, {1.0, {-0.2}}})};
+  EXPECT_EQ(ask(bag, {"--stoppable"}), 1);
+  EXPECT_NE(answers.at(0)["error"].get<std::string>().find("stopping"), std::string::npos);
+  std::string cell = read_text(path("cell.yaml"));
+  cell.replace(cell.find("urdf: scara.urdf"), 16,
+               "urdf: scara.urdf, joints: {elbow: {velocity: 2}}, stopping: {reaction_ms: 40, "
+               "path: kept, time_ms: 60}");
+  write_text(path("cell.yaml"), cell);
+  const auto distance = [](double angle) {
+    return std::sqrt(4.0 + 2.3 * 2.3 - 4.0 * 2.3 * std::cos(angle)) - 0.15;
+  };
+  ASSERT_EQ(ask(bag), 0) << output;
+  EXPECT_NEAR(answers.at(0)["upper"], distance(0.2), 1e-6);
+  ASSERT_EQ(ask(bag, {"--stoppable"}), 0) << output;
+  EXPECT_NEAR(answers.at(0)["upper"], distance(0.2 - 0.8 * 0.1), 1e-6);
+  write_text(path("motion.jsonl"),
+             R"({"joints": ["shoulder"], "times_s": [0, 1], "positions": [[-1], [-0.2]],
+                 "held": {"elbow": 0, "push": 0}, "stoppable": true, "time_scaling": true})");
+  std::string line = read_text(path("motion.jsonl"));
+  std::erase(line, '\n');
+  write_text(path("motion.jsonl"), line + "\n");
+  ASSERT_EQ(run(kAsk, {path("cell.yaml"), path("motion.jsonl"), "--out", path("answers.jsonl")}), 0)
+      << output;
+  const auto answer = nlohmann::json::parse(read_text(path("answers.jsonl")));
+  EXPECT_NEAR(answer["upper"], distance(0.2 - 0.8 * 0.1), 1e-3);
+  EXPECT_EQ(answer["time_scaling"]["factor"], 1.0);
 }
 
 TEST_F(AskOfABag, AnswersHaveTheSameBytesInSeveralThreads) {

@@ -35,6 +35,7 @@ Answering::Answering(const AskOptions& options)
   defaults_.tolerance = options.tolerance;
   defaults_.only_margins = defaults_.only_verdicts = options.only_verdicts;
   if (options.others_still) defaults_.others = OthersMove::kNot;
+  defaults_.stoppable = options.stoppable;
   if (options.files.any()) defaults_.profile.emplace();
 }
 

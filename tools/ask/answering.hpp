@@ -24,7 +24,7 @@ struct AskOptions {
   std::vector<std::string> margins{"0", "0.01", "0.05"};
   double tolerance = 1e-3;
   std::optional<double> expected;
-  bool others_still = false, only_verdicts = false;
+  bool others_still = false, stoppable = false, only_verdicts = false;
   int repeat = 1;
   unsigned threads = 1;
   MotionReportFiles files;

@@ -159,7 +159,8 @@ OrderedJson scaling_of(const TimeScaling& scaling, const Names& names) {
   if (scaling.factor_above < kInfinity) {
     entry["t"] = scaling.time;
     entry["pair"] = names.of(scaling.first, scaling.second);
-    entry["zone"] = names.scene.zones[scaling.zone].name;
+    entry["zone"] = nullptr;
+    if (scaling.zone != TimeScaling::kNoZone) entry["zone"] = names.scene.zones[scaling.zone].name;
   }
   return entry;
 }
@@ -245,6 +246,7 @@ Question read_question(const Json& line, const Question& defaults) {
   }
   if (line.contains("profile")) question.profile = profile_of(line["profile"]);
   if (line.contains("time_scaling")) question.time_scaling = line["time_scaling"].get<bool>();
+  if (line.contains("stoppable")) question.stoppable = line["stoppable"].get<bool>();
   if (line.contains("others")) question.others = others_of(line["others"].get<std::string>());
   if (line.contains("margins")) read_margins(line["margins"], question);
   return question;

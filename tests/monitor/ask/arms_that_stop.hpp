@@ -2,6 +2,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -68,6 +69,17 @@ inline RobotStops drawn_stops(const Scene& scene, const Robot& robot, Random& ra
     }
   }
   return stops;
+}
+
+// How far a joint has come after a time of its stop from a speed, by some law that fits its table:
+// it needs no more than the table says, and often less.
+inline double went(const JointStop& stop, double speed, double t, Random& random) {
+  const double distance = (random.chance(0.5) ? 1.0 : random.unit()) * stop.distance(speed);
+  const double time = stop.time(speed);
+  if (!(distance > 0.0)) return 0.0;
+  const double steepest = std::max(1.0, speed * time / distance);
+  const double power = random.uniform(1.0, steepest);
+  return distance * (1.0 - std::pow(1.0 - std::min(1.0, t / time), power));
 }
 
 inline const std::string kSomeStops = "{reaction_ms: 50, path: kept, time_ms: 200}";

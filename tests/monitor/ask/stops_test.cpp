@@ -106,8 +106,8 @@ class StoppingMachine {
       if (is_braking && stops.keeps_path) {
         at[v] += speeds[j] * share * in_proportion;
       } else if (is_braking) {
-        at[v] +=
-            std::copysign(went(stops.joints[j], std::abs(speeds[j]), share * longest), speeds[j]);
+        at[v] += std::copysign(
+            test::went(stops.joints[j], std::abs(speeds[j]), share * longest, random_), speeds[j]);
       }
       // What slides does not leave its limits.
       const JointVariable& limits = scene_.variables[v];
@@ -115,16 +115,6 @@ class StoppingMachine {
         at[v] = std::clamp(at[v], limits.lower, limits.upper);
     }
     return reaction - age_ + (is_braking ? share * longest : 0.0);
-  }
-  // How far a joint has come while its speed falls, by some law that fits its table: it needs no
-  // more than the table says, and often less.
-  double went(const JointStop& stop, double speed, double t) {
-    const double distance = (chance(0.5) ? 1.0 : random_.unit()) * stop.distance(speed);
-    const double time = stop.time(speed);
-    if (!(distance > 0.0)) return 0.0;
-    const double steepest = std::max(1.0, speed * time / distance);
-    const double power = random_.uniform(1.0, steepest);
-    return distance * (1.0 - std::pow(1.0 - std::min(1.0, t / time), power));
   }
   bool chance(double share) { return random_.uniform(0.0, 1.0) < share; }
   double side() { return chance(0.5) ? 1.0 : -1.0; }

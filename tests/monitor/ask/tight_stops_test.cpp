@@ -23,9 +23,9 @@ namespace {
 
 using test::kStart, test::kTick;
 
-constexpr double kReaction = 0.051;  // s: stated, and a period
-constexpr double kNear = 0.5;        // m: pairs that are compared are no farther
-constexpr double kFar = 0.1;         // m: that stop farther than this may have any bound above it
+constexpr double kTotalReaction = 0.051;  // s: stated, and a period
+constexpr double kNear = 0.5;             // m: pairs that are compared are no farther
+constexpr double kFar = 0.1;  // m: that stop farther than this may have any bound above it
 
 // A stop of one arm of the cell. The other one stands.
 class StoppingArm {
@@ -68,7 +68,7 @@ class StoppingArm {
       if (speed > 0.0)
         in_proportion = std::max(in_proportion, stops.joints[j].distance(speed) / speed);
     }
-    const double end = kReaction + in_proportion;
+    const double end = kTotalReaction + in_proportion;
     constexpr int kSamples = 60;
     Truth found;
     int best = 0;

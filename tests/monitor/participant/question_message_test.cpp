@@ -49,6 +49,7 @@ MotionQuestion whole_question() {
   question.profile =
       ProfileRequest{.first = "hand", .second = "pin", .tolerance = 0.01, .most_points = 20};
   question.time_scaling = true;
+  question.stoppable = true;
   question.work_limit = 1234;
   return asked;
 }
@@ -115,6 +116,7 @@ TEST(QuestionMessage, ComesBackAsItWas) {
   EXPECT_EQ(a.profile->first + a.profile->second, "handpin");
   EXPECT_EQ(a.profile->tolerance, 0.01);
   EXPECT_EQ(a.profile->most_points, 20u);
+  EXPECT_TRUE(a.stoppable);
   EXPECT_TRUE(a.time_scaling);
   EXPECT_EQ(a.work_limit, 1234u);
 }

@@ -552,6 +552,7 @@ class Question:
         profile_tolerance: float = ...,
         profile_pair: Optional[Tuple[str, str]] = ...,
         time_scaling: bool = ...,
+        stoppable: bool = ...,
         work_limit: int = ...,
     ) -> None: ...
 

@@ -132,7 +132,7 @@ Question question_of(
     const std::vector<py::object>& margins, double tolerance, bool only_margins,
     std::uint32_t profile, double profile_tolerance,
     const std::optional<std::pair<std::string, std::string>>& profile_pair, bool time_scaling,
-    std::uint64_t work_limit) {
+    bool stoppable, std::uint64_t work_limit) {
   Question question;
   question.motion = trajectory_of(joints, times, positions, velocities);
   for (const py::tuple& each : beside) {
@@ -176,6 +176,7 @@ Question question_of(
         .first = first, .second = second, .tolerance = profile_tolerance, .most_points = profile};
   }
   question.time_scaling = time_scaling;
+  question.stoppable = stoppable;
   question.work_limit = work_limit;
   return question;
 }
@@ -254,7 +255,7 @@ void add_question(py::module_& module) {
           py::arg("margins") = std::vector<py::object>{py::float_(0.0)},
           py::arg("tolerance") = 1e-3, py::arg("only_margins") = false, py::arg("profile") = 0,
           py::arg("profile_tolerance") = 5e-3, py::arg("profile_pair") = py::none(),
-          py::arg("time_scaling") = false, py::arg("work_limit") = 0,
+          py::arg("time_scaling") = false, py::arg("stoppable") = false, py::arg("work_limit") = 0,
           R"(joints: names of k joints. times: (n,), s, increasing. positions: (n, k), rad or m; joints move
 linearly between waypoints. velocities: (n, k), per second; then along cubic polynomials.
 
@@ -275,8 +276,10 @@ margins: m, of all pairs; or (zone, m), or (first, second, m) of objects or grou
 contact. tolerance: m, upper - lower. only_margins: bounds need not be better
 than the verdicts need. profile: most parts of a distance profile; 0: none. profile_tolerance: m.
 profile_pair: names of two objects; None: the least distance. time_scaling: asks by how much the motion
-may be timed faster for zones with `separation`. work_limit: most distance queries; 0: 1,000,000, or
-that of the daemon.
+may be timed faster for zones with `separation`. stoppable: bounds and margins count stops that begin at
+any instant of the motion, too, as the cell states `stopping` for its robot; time_scaling then keeps the
+margins as well, and tries no factor above 1. work_limit: most distance queries; 0: 1,000,000, or that of
+the daemon.
 
 Raises TypeError and ValueError for wrong shapes; names and values are checked when it is asked.)")
       .def("__repr__", [](const Question& q) {
