@@ -66,7 +66,7 @@ SimulatedTime::Change SimulatedTime::note(std::int64_t time_ns, std::int64_t sen
   for (std::size_t i = 0; i < kWords; ++i) kept_[number % kKept][i].store(words[i]);
   count_.store(number + 1);
   if (is_first) return Change::kFirst;
-  return is_back ? Change::kBack : Change::kNone;
+  return is_back ? Change::kBack : Change::kGoesOn;
 }
 
 bool SimulatedTime::is_silent(std::int64_t monotonic_ns) const noexcept {

@@ -25,7 +25,7 @@ class SimulatedTime {
   // A larger step is a jump: the time does not go on between the two.
   static constexpr std::int64_t kLongestStepNs = 250'000'000;
 
-  enum class Change : std::uint8_t { kNone, kFirst, kBack };
+  enum class Change : std::uint8_t { kGoesOn, kFirst, kBack };
   // A message of the clock: its time, its time of sending (CLOCK_REALTIME of the sender), and when
   // it came (CLOCK_MONOTONIC).
   Change note(std::int64_t time_ns, std::int64_t sent_ns, std::int64_t came_ns) noexcept;

@@ -41,7 +41,7 @@ bool RosClock::decode(std::uint32_t, const RawMessage& message, const Now& now, 
     case SimulatedTime::Change::kFirst:
       out_.tell(News(lines::kSimTimeHeard, seconds(time_ns)));
       break;
-    case SimulatedTime::Change::kNone:
+    case SimulatedTime::Change::kGoesOn:
       if (was_silent) out_.tell(News(lines::kSimTimeHeard, seconds(time_ns)));
   }
   is_waiting_said_ = false;

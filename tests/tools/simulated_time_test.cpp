@@ -82,7 +82,6 @@ class SimulatedDaemon : public DaemonCameras {
     const auto& [lower, upper] = std::tie(ball_pair().lower, ball_pair().upper);
     EXPECT_LE(lower, truth + kDepthError) << "at " << report->now_ns << " of " << now_;
     EXPECT_GE(upper, truth - kDepthError) << "at " << report->now_ns << " of " << now_;
-    widest_ = std::max(widest_, upper - lower);
   }
   void play_until_checked(int checks) {
     const int until = checks_ + checks;
@@ -104,7 +103,6 @@ class SimulatedDaemon : public DaemonCameras {
   std::chrono::steady_clock::time_point last_;
   int steps_ = 0, checks_ = 0;
   std::uint64_t checked_ = 0;
-  double widest_ = 0.0;
 };
 
 class SimulatedDaemons : public SimulatedDaemon, public testing::WithParamInterface<double> {};
@@ -158,9 +156,9 @@ TEST_P(SimulatedDaemons, CertifyDistancesAtTheSimulatedTimeThroughAPauseAndANewB
 
   daemon->signal(SIGTERM);
   EXPECT_EQ(daemon->wait(), 0) << daemon->output();
+  // Times in a file do not go back: the second run has a file of its own.
   const std::string second = (folder / "run-2.mcap").string();
-  for (const std::vector<std::string>& files :
-       {std::vector{file}, std::vector{file, second}, std::vector{second}}) {
+  for (const std::vector<std::string>& files : {std::vector{file}, std::vector{file, second}}) {
     ChildProcess compared(kReplay, with(with({"check"}, files), {"--compare"}));
     EXPECT_EQ(compared.wait(), 0) << compared.output();
     EXPECT_TRUE(compared.wrote("reports compared")) << compared.output();

@@ -42,7 +42,7 @@ class Simulation {
   [[nodiscard]] std::int64_t clock() const { return clock_; }
 
   SimulatedTime time;
-  SimulatedTime::Change last_change = SimulatedTime::Change::kNone;
+  SimulatedTime::Change last_change = SimulatedTime::Change::kGoesOn;
 
  private:
   double factor_;
