@@ -118,7 +118,7 @@ void LyingSenders::speak_as_rival(Channel channel, const Rival& rival, std::int6
   Message sent = message(channel, spoken, true);
   sent.writer = writer_of(channel, true);
   sent.due = t;
-  sent.sent_ns = start_ns_ + t;
+  sent.sent_ns = start_ns_ + sending_.machine_time(t);
   under_way_.emplace(t, std::move(sent));
 }
 
