@@ -56,7 +56,7 @@ class EventRecording : public OfflineReplayTest {
     Monitor monitor(cell.scene);
     Recorder recorder(run, cell, kStart, options);
     for (int tick = 0; tick < ticks; ++tick) {
-      const std::int64_t now_ns = kStart + (tick < back_at ? tick : tick - back_at) * kTick;
+      const std::int64_t now_ns = kStart + tick * kTick;
       const auto sequence = static_cast<std::uint64_t>(tick + 1);
       PoseBatch batch{SourceName("all"), sequence, cell.scene.revision, {}};
       batch.samples.push_back(sample(0, at(0, 0, 0.15 + height(tick)), now_ns));
@@ -68,8 +68,6 @@ class EventRecording : public OfflineReplayTest {
     }
     EXPECT_TRUE(recorder.close()) << recorder.error();
   }
-
-  int back_at = 1'000'000;  // the tick at which the time begins anew
 };
 
 double far_away(int /*tick*/) { return 0.5; }
@@ -98,37 +96,6 @@ TEST_F(EventRecording, AFileHoldsTheTicksAroundTheEntryOfAZone) {
   ASSERT_THAT(happened, SizeIs(1));
   EXPECT_EQ("zone", happened[0].at("cause"));
   EXPECT_EQ(std::to_string(kStart + 500 * kTick), happened[0].at("t_ns"));
-}
-
-// As that of a simulation does. What was before the new begin is not around an event.
-TEST_F(EventRecording, AFileHoldsNothingFromBeforeTheTimeWentBack) {
-  cell.scene.objects[0].max_speed = 1000.0;
-  back_at = 480;
-  run_with(around(100), 1000, near_between(500, 520));
-  ASSERT_THAT(files(), SizeIs(1));
-  const auto ticks = cycles(files()[0]);
-  EXPECT_EQ(481u, ticks.front());
-  EXPECT_EQ(601u, ticks.back());
-}
-
-TEST_F(EventRecording, TheNextFileBeginsWhereTheTimeGoesBack) {
-  back_at = 300;
-  run_with({.overwrite = false}, 700, near_between(500, 520));
-  ASSERT_THAT(files(), SizeIs(2));
-  const std::vector<std::filesystem::path> in_order{run, run.parent_path() / "run-2.mcap"};
-  EXPECT_EQ(300u, cycles(in_order[0]).back());
-  EXPECT_EQ(301u, cycles(in_order[1]).front());
-  for (const std::filesystem::path& file : in_order) {
-    std::int64_t before = 0;
-    for (const Kept& message : messages_of(file)) {
-      EXPECT_GE(message.log_ns, before) << file;
-      before = message.log_ns;
-    }
-  }
-  const OfflineReplay same =
-      replay_offline(cell, run, {.compare = Comparison::kBits, .continued_in = {in_order[1]}});
-  EXPECT_TRUE(same.ok()) << same.text();
-  EXPECT_EQ(700u, same.compared);
 }
 
 // A frame every ten ticks, in front of its report.
