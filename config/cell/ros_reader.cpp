@@ -137,6 +137,8 @@ void read_ros(const YamlNode& node, const Quantities& quantities, RosSettings& s
     settings.world_frame = read_frame(*frame, diagnostics).value_or("");
   if (const YamlNode* stamps = map.optional("stamps"))
     settings.stamps = read_stamps(*stamps, diagnostics);
+  if (const YamlNode* flag = map.optional("use_sim_time"))
+    settings.use_sim_time = read_flag(*flag, diagnostics).value_or(false);
   map.refuse_unknown_keys();
 }
 

@@ -80,6 +80,7 @@ struct RosSettings {
   // Empty: outputs call it "world".
   std::string world_frame;
   RosStamps stamps = RosStamps::kMessage;  // of tf
+  bool use_sim_time = false;               // the time is that of /clock
 
   [[nodiscard]] std::string world() const { return world_frame.empty() ? "world" : world_frame; }
 };

@@ -326,6 +326,8 @@ void SensorReader::read(const YamlNode& node, SensorList& list, ObjectList& obje
         read_number(*rate, kFrameRates, "the largest rate of frames in Hz", diagnostics_);
     if (hz) sensor.least_interval_ns = static_cast<std::int64_t>(1e9 / *hz);
   }
+  if (const YamlNode* stamps = map.optional("stamps"))
+    sensor.stamps = read_stamps(*stamps, diagnostics_);
   if (const YamlNode* error = map.optional("stamp_error_ms")) {
     const auto ms = read_number(*error, kStampErrors, "how far a stamp is off in ms", diagnostics_);
     if (ms) sensor.stamp_error_ns = static_cast<std::int64_t>(std::ceil(1e6 * *ms));

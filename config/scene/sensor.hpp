@@ -10,6 +10,7 @@
 
 #include "config/scene/reach_ball.hpp"
 #include "config/scene/robot.hpp"
+#include "config/scene/ros_stamps.hpp"
 
 namespace clearance {
 
@@ -47,6 +48,7 @@ struct Sensor {
   std::uint32_t object = 0;  // index into Scene::objects
   std::string topic;         // of the images, points or maps, in ROS 2's spelling
   std::string camera_info;   // of CameraInfo; of depth images only
+  RosStamps stamps = RosStamps::kMessage;
 
   // The place of its frame, which has z forward, x right, y down for a camera. With
   // `frames_by_message`, the frame of tf that each message names; else `mount` states a frame of

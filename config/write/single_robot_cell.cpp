@@ -53,6 +53,7 @@ std::string single_robot_cell(const SingleRobotOptions& options) {
   if (!options.joint_states.empty()) {
     out << YAML::Key << "joint_states" << YAML::Value << YAML::DoubleQuoted << options.joint_states;
   }
+  if (!options.stamps.empty()) out << YAML::Key << "stamps" << YAML::Value << options.stamps;
   if (!options.packages.empty()) {
     out << YAML::Key << "packages" << YAML::Value << YAML::BeginMap;
     for (const auto& [package, directory] : options.packages) {

@@ -19,6 +19,7 @@ struct SingleRobotOptions {
   std::vector<std::pair<std::string, std::filesystem::path>> packages = {};
   double age_limit_ms = 20.0;     // of its joints
   std::string joint_states = {};  // the topic of ROS 2 that has its joints; empty: any by that name
+  std::string stamps = {};        // the key of its robot; empty: not stated
   // The cell's keys `tolerance`, m, and `max_parts`, which limit the parts of meshes.
   std::optional<double> mesh_tolerance = {};
   std::optional<unsigned> max_parts = {};

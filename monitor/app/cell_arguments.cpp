@@ -37,6 +37,11 @@ void CellArguments::add_to(CommandLine& line, bool from_ros) {
        "The topic of ROS 2 that has the robot's joints; otherwise each topic joint_states, in any "
        "namespace",
        topic_like("/arm/joints"), excluding("CELL")},
+      {"--stamps", &robot.stamps,
+       "The time of a joint state that counts: message, the stamp in it, or sent, when it was sent",
+       expecting("message or sent",
+                 [](const std::string& text) { return text == "message" || text == "sent"; }),
+       excluding("CELL")},
       {"--age-limit-ms",
        &robot.age_limit_ms,
        "An older position makes what hangs on the joint stale",

@@ -20,8 +20,8 @@ struct CellArguments {
   std::string description_topic;
   std::string share;  // CellOptions::share
 
-  // Adds CELL, and --urdf with --srdf, --package, --joint-states and --age-limit-ms; one of CELL
-  // and --urdf is required. With `from_ros`, --robot-description is a third choice.
+  // Adds CELL, and --urdf with --srdf, --package, --joint-states, --stamps and --age-limit-ms; one
+  // of CELL and --urdf is required. With `from_ros`, --robot-description is a third choice.
   void add_to(CommandLine& line, bool from_ros = false);
   [[nodiscard]] CellResult read() const;
   // The options of read(), to read a changed text as the first one.

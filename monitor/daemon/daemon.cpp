@@ -81,9 +81,11 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
       service_(fmt::format("cell '{}' at {} Hz", cell.scene.name, cell.scene.rate_hz)),
       reload_(cell, options.reload, service_, reload_actions()),
       participant_(join(options)),
+      time_(cell.ros.use_sim_time ? std::make_unique<SimulatedTime>() : nullptr),
       moveit_([this](SceneTask task) { return put(std::move(task)); }),
-      poses_(cell, participant_,
-             [this](moveit::RawScene message) { moveit_.take(std::move(message)); }),
+      poses_(
+          cell, participant_,
+          [this](moveit::RawScene message) { moveit_.take(std::move(message)); }, time_.get()),
       identity_(make_identity(options.partner)),
       partner_(options.partner.empty()
                    ? nullptr
@@ -100,7 +102,8 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
                      (PoseReader::samples_a_batch(cell) + PoseReader::joints_a_batch(cell)),
       .ahead_ns = ahead_ns(),
       .pace = partner_ ? &partner_->ticks : nullptr,
-      .frames = poses_.frames()};
+      .frames = poses_.frames(),
+      .time = time_.get()};
   PoseSource& source = partner_ ? static_cast<PoseSource&>(partner_->ticks) : poses_;
   loop_ = std::make_unique<TickLoop>(cell.scene, source, first_sinks(), clock_, loop);
   changer_ = std::make_unique<SceneChanger>(*loop_, now_.cell, static_cast<CellParts&>(*this));

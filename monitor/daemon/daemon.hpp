@@ -21,6 +21,7 @@
 #include "monitor/daemon/service_manager.hpp"
 #include "monitor/daemon/share_scenes.hpp"
 #include "monitor/dds/pose_reader.hpp"
+#include "monitor/inputs/simulated_time.hpp"
 #include "monitor/loop/report_queue.hpp"
 #include "monitor/loop/tick_loop.hpp"
 #include "monitor/participant/participant.hpp"
@@ -123,6 +124,7 @@ class Daemon : private CellParts {
   ServiceManager service_;
   CellReload reload_;
   Participant participant_;
+  std::unique_ptr<SimulatedTime> time_;  // null: that of this machine
   MoveItPort moveit_;
   PoseReader poses_;
   const DaemonIdentity identity_;

@@ -56,6 +56,7 @@ struct Arguments {
   bool record_over = false;  // replace existing files
   RecordingArguments recording;
   bool gradients = false;
+  bool use_sim_time = false;
   std::vector<std::string> ros;        // ROS 2 outputs in addition to the cell's
   std::vector<std::string> commands;   // clients in addition to the cell's
   std::vector<std::string> questions;  // likewise
@@ -125,6 +126,10 @@ void add_options(CommandLine& line, Arguments& arguments) {
        "Publish how the distances of published pairs change with joint positions, as "
        "'gradients: true' in the cell does"},
       ros_outputs_option(arguments.ros, {"--share"}),
+      {"--use-sim-time", &arguments.use_sim_time,
+       "The time is that of a simulation, by /clock of ROS 2, as 'use_sim_time: true' of 'ros2' in "
+       "the cell says (idl/ROS.md)",
+       excluding("--share")},
   });
   add_inputs(line, arguments);
   line.add({
@@ -177,6 +182,7 @@ void add_names(const std::vector<std::string>& asked, std::vector<std::string>& 
 // Adds to a cell, and to every changed one, what the command line asks for.
 void finish(const Arguments& arguments, Cell& cell) {
   cell.scene.gradients = cell.scene.gradients || arguments.gradients;
+  cell.ros.use_sim_time = cell.ros.use_sim_time || arguments.use_sim_time;
   add_asked(arguments.ros, cell.ros.outputs);
   add_names(arguments.commands, cell.commands.from);
   add_names(arguments.questions, cell.questions.from);
@@ -313,6 +319,12 @@ int run(int argc, char** argv, StopSignal& signal) {
         "clearanced: --partner: found a cell of {:g} Hz; expected at least {:g} Hz, since partners "
         "hear from each other once a tick, and a silence of 20 ms counts as an end\n",
         cell->scene.rate_hz, kLeastPartnersHz);
+    return kUsage;
+  }
+  if (cell->ros.use_sim_time && (!arguments.daemon.partner.empty() || cell->shares.is_one())) {
+    print(stderr,
+          "clearanced: found 'use_sim_time' with a partner or a share; expected one daemon for the "
+          "cell, since each of several would have a simulated time of its own\n");
     return kUsage;
   }
   for (const std::filesystem::path& file : arguments.cell.files()) {

@@ -91,7 +91,8 @@ Recording::Recording(const std::filesystem::path& file, const RecordingOptions& 
       poses_(poses),
       built_(poses.keep_frames()),
       health_(health),
-      recorder_(file, *cell, SystemClock().realtime_ns(), capped(options, file, *cell)) {
+      recorder_(file, *cell, cell->ros.use_sim_time ? 0 : SystemClock().realtime_ns(),
+                capped(options, file, *cell)) {
   if (!recorder_.ok()) throw RecordError(fmt::format("recording: {}", recorder_.error()));
   tell_of_missing_files();
   health_.begin(file_);

@@ -67,18 +67,21 @@ std::size_t PoseReader::joints_a_batch(const Cell& cell) noexcept {
 
 // Reserves all memory before the thread starts. Later, only what is heard for the first time
 // allocates.
-PoseReader::PoseReader(const Cell& cell, Participant& participant, MoveItMessages::Use use_scene)
+PoseReader::PoseReader(const Cell& cell, Participant& participant, MoveItMessages::Use use_scene,
+                       SimulatedTime* time)
     : topics_(&cell.topics),
       undecodable_before_(undecodable_samples()),
       where_(participant.where()),
       partition_(participant.partition()),
-      sensors_(cell.scene.sensors.empty() ? nullptr
-                                          : std::make_unique<SensorReader>(cell, participant)),
+      sensors_(cell.scene.sensors.empty()
+                   ? nullptr
+                   : std::make_unique<SensorReader>(cell, participant, time)),
       intake_(cell,
               {.admits_sources = true,
                .most_samples = samples_a_batch(cell),
                .most_joints = joints_a_batch(cell),
                .use_scene = std::move(use_scene),
+               .time = time,
                .writer_name = [this](std::uint64_t writer) { return guid_of(writer); }},
               [this](PoseBatch& batch) { return hand_over(batch); }),
       ros_(participant, intake_),

@@ -33,8 +33,9 @@ class PoseReader final : public PoseSource {
   static constexpr std::size_t kBatches = 128;
 
   // The participant must outlive this, and the cell until change() is called. `use_scene` gets
-  // MoveIt's messages, in the thread that takes samples.
-  PoseReader(const Cell& cell, Participant& participant, MoveItMessages::Use use_scene = {});
+  // MoveIt's messages, in the thread that takes samples. `time` as IntakeOptions::time.
+  PoseReader(const Cell& cell, Participant& participant, MoveItMessages::Use use_scene = {},
+             SimulatedTime* time = nullptr);
   ~PoseReader() override;
 
   // Starts the threads that take samples. Call this once, when ticks are about to begin: what

@@ -24,9 +24,10 @@ constexpr std::int64_t kSensorSilentNs = 5'000'000'000;
 
 }  // namespace
 
-SensorReader::SensorReader(const Cell& cell, Participant& participant)
+SensorReader::SensorReader(const Cell& cell, Participant& participant, SimulatedTime* time)
     : cell_(&cell),
       participant_(participant),
+      time_(time),
       frames_(cell.scene.sensors.size()),
       batches_(kBatches),
       ids_(cell.scene),
@@ -34,9 +35,10 @@ SensorReader::SensorReader(const Cell& cell, Participant& participant)
       intake_(cell,
               {.use_sensor =
                    [this](const RawSensorMessage& message) {
-                     sensors_->add(message, {SystemClock().realtime_ns(), now_ns_});
+                     sensors_->add(message, {time_ns(), now_ns_});
                    },
-               .only_sensors = true},
+               .only_sensors = true,
+               .time = time},
               [](PoseBatch&) { return true; }),
       ros_(participant, intake_),
       wait_(participant, {}),
@@ -97,7 +99,7 @@ void SensorReader::note(const PoseBatch& batch) {
   NotedBatch* const slot = batches_.back();
   if (slot == nullptr) return;
   slot->batch = batch;
-  slot->came_ns = SystemClock().realtime_ns();
+  slot->came_ns = time_ns();
   batches_.push();
 }
 
@@ -133,6 +135,7 @@ void SensorReader::run() {
     now_ns_ = clock.monotonic_ns();
     try {
       poll();
+      forget_other_run();
       take_all();
       build();
       log_news();
@@ -155,6 +158,18 @@ void SensorReader::poll() {
   }
   const std::vector<RosReaders::Reader>& readers = ros_.readers();
   for (; waited_for_ < readers.size(); ++waited_for_) wait_.add(readers[waited_for_].handle);
+}
+
+std::int64_t SensorReader::time_ns() const noexcept {
+  SystemClock clock;
+  return time_ == nullptr ? clock.realtime_ns() : time_->now_ns(clock.monotonic_ns());
+}
+
+// Stamps of a simulation that began anew are those of another motion.
+void SensorReader::forget_other_run() {
+  if (time_ == nullptr || std::exchange(resets_, time_->resets()) == time_->resets()) return;
+  sensors_->begin_anew();
+  last_.assign(last_.size(), {});
 }
 
 // Joints and poses come first: they may be those at the stamp of a frame.

@@ -30,8 +30,8 @@ namespace clearance {
 class SensorReader {
  public:
   // Allocates the memory of all clouds. The participant must outlive this, and the cell until
-  // change() is called.
-  SensorReader(const Cell& cell, Participant& participant);
+  // change() is called. `time` as IntakeOptions::time.
+  SensorReader(const Cell& cell, Participant& participant, SimulatedTime* time = nullptr);
   ~SensorReader();
   SensorReader(const SensorReader&) = delete;
   SensorReader& operator=(const SensorReader&) = delete;
@@ -66,7 +66,10 @@ class SensorReader {
 
  private:
   void run();
+  // The present time, in which messages are stamped.
+  [[nodiscard]] std::int64_t time_ns() const noexcept;
   void poll();
+  void forget_other_run();
   void take_all();
   void build();
   void build_own();
@@ -84,11 +87,13 @@ class SensorReader {
 
   const Cell* cell_;
   Participant& participant_;
+  const SimulatedTime* time_;
+  std::uint64_t resets_ = 0;  // of that time
   FrameExchange frames_;
   BuiltFrames built_;
   struct NotedBatch {
     PoseBatch batch;
-    std::int64_t came_ns = 0;  // CLOCK_REALTIME
+    std::int64_t came_ns = 0;  // as of time_ns()
   };
   SpscRing<NotedBatch> batches_;
   std::mutex mutex_;  // guards what follows, but for the statuses

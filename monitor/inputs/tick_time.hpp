@@ -7,7 +7,8 @@
 namespace clearance {
 
 struct TickTime {
-  // CLOCK_REALTIME at the start of the daemon, plus the time that has passed since. A value below
+  // CLOCK_REALTIME at the start of the daemon, plus the time that has passed since; or the time of
+  // a simulation (SimulatedTime), which is then that of all stamps. A value below
   // that of the tick before means that an unknown time has passed. Every pose is then late until
   // the next one comes.
   std::int64_t now_ns = 0;

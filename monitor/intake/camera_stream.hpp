@@ -46,6 +46,9 @@ class CameraStream {
   // Does not count the message that was refused last, because it is kept for later.
   void take_back(FrameFault fault) noexcept { --counts_[static_cast<std::size_t>(fault)]; }
 
+  // Stamps begin anew: no frame before is younger than those that follow.
+  void begin_anew() noexcept { last_ = {}; }
+
   // Nothing before the first CameraInfo, or while another one is said.
   [[nodiscard]] const std::optional<PinholeCamera>& camera() const noexcept { return camera_; }
   // The stamp of the last frame that was used; 0: none.

@@ -8,6 +8,7 @@
 
 #include "monitor/inputs/source_numbers.hpp"
 #include "monitor/intake/own_batches.hpp"
+#include "monitor/intake/ros_clock.hpp"
 
 namespace clearance {
 
@@ -30,6 +31,7 @@ Intake::Intake(const Cell& cell, IntakeOptions options, Use use)
       .most_joints = options_.most_joints};
   const auto from = options_.is_log ? TransformsFrom::kLog : TransformsFrom::kPublishers;
   // A row for every kind of input.
+  add<RosClock>(options_.time, *this);
   add<OwnPoses>(cell.scene, topics_->poses, options_.most_samples, *this);
   add<OwnJointStates>(cell.scene, topics_->joint_states, options_.most_joints, *this);
   joint_states_ = add<RosJointStates>(cell.scene, joint_states, *this);
@@ -87,16 +89,26 @@ bool Intake::take(const RawMessage& message, const Now& now) {
   monotonic_ns_ = now.monotonic_ns;
   Route& route = routes_[message.topic];
   ++route.counts.messages;
+  RawMessage timed = message;
+  const bool is_clock = route.ends.front().wanted.delivery == &kRosClock;
+  if (options_.time != nullptr && !is_clock) timed.sent_ns = options_.time->at(message.sent_ns);
   bool decodes = true;
-  for (const Route::End& end : route.ends)
-    decodes = end.decoder->decode(end.wanted.port, message, now, route.counts) && decodes;
+  for (const Route::End& end : route.ends) {
+    decodes =
+        end.decoder->decode(end.wanted.port, timed, in_its_time(now), route.counts) && decodes;
+  }
   if (!decodes) ++route.counts.undecodable;
   return decodes;
 }
 
 void Intake::settle(const Now& now) {
   monotonic_ns_ = now.monotonic_ns;
-  for (const std::unique_ptr<Decoder>& decoder : decoders_) decoder->settle(now);
+  for (const std::unique_ptr<Decoder>& decoder : decoders_) decoder->settle(in_its_time(now));
+}
+
+Now Intake::in_its_time(const Now& now) const noexcept {
+  if (options_.time == nullptr) return now;
+  return {.realtime_ns = options_.time->now_ns(now.monotonic_ns), .monotonic_ns = now.monotonic_ns};
 }
 
 std::int64_t Intake::patience_ns() const {
@@ -115,8 +127,10 @@ void Intake::keep(std::vector<std::uint64_t> writers) {
 
 std::vector<News> Intake::take_news() { return std::exchange(news_, {}); }
 
-// In the daemon, a batch that was decoded by names has the ids of this cell.
+// In the daemon, a batch that was decoded by names has the ids of this cell. Before the first
+// message of a simulation's clock, no batch can be judged.
 void Intake::give(PoseBatch& batch, std::uint64_t writer, std::size_t cut) {
+  if (options_.time != nullptr && !options_.time->is_known()) return;
   const bool is_by_name = !batch.joints.empty() || writer == RosTransforms::kWriter;
   if (options_.admits_sources && is_by_name) batch.scene_revision = scene_->revision;
   const bool is_ours = made_for(batch, scene_->revision);

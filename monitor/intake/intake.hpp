@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "config/cell/cell.hpp"
+#include "monitor/inputs/simulated_time.hpp"
 #include "monitor/intake/decoder.hpp"
 #include "monitor/intake/moveit_messages.hpp"
 #include "monitor/intake/pose_sources.hpp"
@@ -43,6 +44,9 @@ struct IntakeOptions {
   // Only those: their readers have a thread of their own, since an image takes long to copy. There
   // are no batches.
   bool only_sensors = false;
+  // The time of all messages, from /clock; null: that of this machine. Times of sending and of
+  // arrival are converted here, so that nothing behind this knows of another time.
+  SimulatedTime* time = nullptr;
   // The name of a writer in news.
   std::function<std::string(std::uint64_t)> writer_name = [](std::uint64_t writer) {
     return std::to_string(writer);
@@ -78,6 +82,7 @@ class Intake final : public Outlet {
   // True if the cell could use any topic of ROS 2.
   [[nodiscard]] bool hears_ros() const noexcept {
     if (options_.only_sensors) return hears_sensors_;
+    if (options_.time != nullptr) return true;
     return !scene_->variables.empty() || transforms_->any() || hears_moveit_ || hears_sensors_;
   }
 
@@ -113,6 +118,7 @@ class Intake final : public Outlet {
 
   template <class Kind, class... Arguments>
   const Kind* add(Arguments&&... arguments);
+  [[nodiscard]] Now in_its_time(const Now& now) const noexcept;
   void give(PoseBatch& batch, std::uint64_t writer, std::size_t cut) override;
   void tell(News news) override { news_.push_back(std::move(news)); }
   // Returns null if the batch is refused. The batch of a second writer of one name gets a source

@@ -105,8 +105,25 @@ inline constexpr LogLine<Text, double, std::int64_t, Text, std::int64_t, std::in
     "that zones flicker; age_limit_ms of {} would fit"};
 inline constexpr LogLine<Text, double, Text> kOtherClock{
     "other-clock", kWarn,
-    "{} are stamped {:+.3f} s off the time at which they are sent: by a clock of their own, as of "
-    "a simulation (use_sim_time); {} would take the time at which they are sent"};
+    "{} are stamped {:+.3f} s off the time at which they are sent: by a clock of their own. For "
+    "the /clock of a simulation, say --use-sim-time; {} would take the time at which they are "
+    "sent"};
+inline constexpr LogLine<> kSimTimeAwaited{
+    "sim-time-awaited", kWarn,
+    "the simulated time is not known, and no input counts: no message of rosgraph_msgs/msg/Clock "
+    "has come on rt/clock (use_sim_time)"};
+inline constexpr LogLine<double> kSimTimeHeard{"sim-time-heard", kInfo,
+                                               "the simulated time is {:.3f} s, by rt/clock"};
+inline constexpr LogLine<double> kSimTimeSilent{
+    "sim-time-silent", kWarn,
+    "rt/clock is silent, after {:.3f} s: the simulation is paused without saying so, or dead. All "
+    "inputs are late until newer ones come"};
+inline constexpr LogLine<double, double> kSimTimeBack{
+    "sim-time-back", kWarn,
+    "the simulated time went back from {:.3f} to {:.3f} s: what was heard before does not count"};
+inline constexpr LogLine<> kTwoClocks{
+    "two-clocks", kWarn,
+    "two publishers of rt/clock: the first one counts, until it leaves or is silent. End one"};
 inline constexpr LogLine<Text, Text, Text> kSourceChanged{"source-changed", kWarn,
                                                           "{}: sent by '{}' now, before by '{}'"};
 inline constexpr LogLine<Text> kVelocitiesContradict{

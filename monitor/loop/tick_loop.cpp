@@ -101,8 +101,7 @@ void TickLoop::tick_once() noexcept {
   TickPace* const pace = options_.pace;
   if (pace == nullptr) between_ticks();
   take_in();
-  const TickTime time = pace == nullptr ? time_.read(clock_) : pace->time();
-  const Report& report = state_.tick(time);
+  const Report& report = state_.tick(tick_time());
   statistics_.cycle = report.cycle;
   statistics_.now_ns = report.now_ns;
   statistics_.clock_offset_ns = report.clock_offset_ns;
@@ -114,6 +113,12 @@ void TickLoop::tick_once() noexcept {
     sink->report(report, std::span(used_).first(used_count_));
   }
   state_.clear();
+}
+
+TickTime TickLoop::tick_time() noexcept {
+  if (options_.pace != nullptr) return options_.pace->time();
+  return options_.time == nullptr ? time_.read(clock_)
+                                  : options_.time->tick_time(clock_.monotonic_ns());
 }
 
 bool TickLoop::offer(SceneOffer& offer) noexcept {

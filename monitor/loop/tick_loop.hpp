@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "monitor/inputs/simulated_time.hpp"
 #include "monitor/loop/loop_question.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/steady_time.hpp"
@@ -25,6 +26,7 @@ struct TickLoopOptions {
   std::int64_t ahead_ns = 0;
   TickPace* pace = nullptr;         // null: the loop alone decides when it ticks
   FrameExchange* frames = nullptr;  // of sensors; null: there are none
+  SimulatedTime* time = nullptr;    // null: the steady time of the clock. Not with a pace
 };
 
 // A successor with what else of the loop belongs to one scene.
@@ -97,6 +99,7 @@ class TickLoop {
   void change_scene(SceneOffer& offer) noexcept;
   void take_in() noexcept;
   void tick_once() noexcept;
+  [[nodiscard]] TickTime tick_time() noexcept;
   void use(const PoseBatch& batch) noexcept;
   void note_source(const PoseBatch& batch) noexcept;
   void note_minimum(const Report& report) noexcept;

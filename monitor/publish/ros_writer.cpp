@@ -167,7 +167,8 @@ void RosWriter::write_markers(const QueuedReport& queued) {
 void RosWriter::write_diagnostics(const LoopStatistics& statistics) {
   const auto health = make_health_(statistics);
   if (!health) return;
-  const auto sample = cell_diagnostics_.make(**health, last_, dds_time());
+  const std::int64_t stamp_ns = (**health).now_ns + (**health).clock_offset_ns;
+  const auto sample = cell_diagnostics_.make(**health, last_, stamp_ns);
   if (writes_.may_write()) writes_.write(diagnostics_, &*sample);
 }
 

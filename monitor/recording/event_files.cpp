@@ -196,6 +196,13 @@ bool EventFiles::end_tick(std::int64_t now_ns, const std::optional<RecordedEvent
   return next_is_start_;
 }
 
+// The time around an event ends here.
+void EventFiles::begin_anew(std::int64_t) {
+  if (writer_) end();
+  ring_.clear();
+  next_is_start_ = true;
+}
+
 // The tick that follows is the first one of the next file, and states every zone.
 void EventFiles::continue_file(std::int64_t now_ns) {
   is_first_tick_ = writer_->roll(now_ns);

@@ -40,6 +40,7 @@ class EventFiles final : public RecordingSink {
   void write(SideTopic topic, std::int64_t log_ns, std::int64_t stamp_ns,
              std::span<const std::byte> cdr) override;
   bool end_tick(std::int64_t now_ns, const std::optional<RecordedEvent>& event) override;
+  void begin_anew(std::int64_t now_ns) override;
   bool check() override;
   bool close() override;
   [[nodiscard]] bool ok() const noexcept override { return error_.empty(); }

@@ -36,6 +36,7 @@ class EventRing {
   [[nodiscard]] bool empty() const noexcept { return tail_ == head_; }
   // The first message; the ring must not be empty.
   [[nodiscard]] RingMessage front() const { return at(tail_).message; }
+  void clear() noexcept { tail_ = head_; }
   // Drops what is before the last start at or before this time.
   void drop_before(std::int64_t log_ns);
 

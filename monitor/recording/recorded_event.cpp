@@ -33,7 +33,8 @@ std::optional<RecordedEvent> EventWatch::find(const Report& report, const Scene&
   const std::uint64_t total =
       std::accumulate(report.rejected.begin(), report.rejected.end(), std::uint64_t{0});
   const bool refuses = std::exchange(rejected_, total) < total;
-  const bool was_quiet = !rejected_ns_ || report.now_ns - *rejected_ns_ >= quiet_ns_;
+  const bool was_quiet =
+      !rejected_ns_ || report.now_ns < *rejected_ns_ || report.now_ns - *rejected_ns_ >= quiet_ns_;
   if (refuses) rejected_ns_ = report.now_ns;
   const std::uint32_t unsure = report.stale + report.unknown;
   const bool was_unsure = std::exchange(was_unsure_, unsure > 0);

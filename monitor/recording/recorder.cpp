@@ -3,8 +3,10 @@
 #include "monitor/recording/recorder.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "config/text/fnv1a.hpp"
+#include "monitor/inputs/elapsed.hpp"
 #include "monitor/inputs/scene_ids.hpp"
 #include "monitor/recording/event_files.hpp"
 #include "monitor/wire/convert.hpp"
@@ -15,6 +17,8 @@ namespace {
 // When this many batches wait, those that no report names (made for another scene) are written all
 // the same.
 constexpr std::size_t kMostWaiting = 4096;
+// A simulation began anew if the time goes back by more than this, ns.
+constexpr std::int64_t kOtherRunNs = 1'000'000;
 
 // The source's stamp of a batch: its newest pose; joints have one in common.
 std::int64_t stamp_of(const PoseBatch& batch, std::int64_t otherwise) {
@@ -109,7 +113,11 @@ void Recorder::joined(std::span<const std::byte> cdr) {
 // zones of a report, and the next one begins with the state of every zone.
 void Recorder::report(const Report& report, std::span<const SourceUse> sources,
                       std::int64_t publish_ns, std::uint64_t lineage) {
-  last_ns_ = report.now_ns;
+  if (elapsed(report.now_ns, std::exchange(last_ns_, report.now_ns)) > kOtherRunNs) {
+    sink_->begin_anew(report.now_ns);
+    watch_.change();
+    states_all_zones_ = true;
+  }
   const bool is_kept = options_.ticks_every <= 1 || report.cycle % options_.ticks_every == 0;
   if (options_.ticks_every > 1) sources = thin_out(sources, is_kept);
   if (is_kept) write_report(report, sources, publish_ns, lineage);

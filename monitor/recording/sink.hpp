@@ -34,6 +34,10 @@ class RecordingSink {
   // then states every zone.
   virtual bool end_tick(std::int64_t now_ns, const std::optional<RecordedEvent>& event) = 0;
 
+  // The time goes back to this one. What follows stands in another file, whose first tick states
+  // every zone: times in a file do not go back.
+  virtual void begin_anew(std::int64_t now_ns) = 0;
+
   virtual bool check() = 0;
   virtual bool close() = 0;
   [[nodiscard]] virtual bool ok() const noexcept = 0;
@@ -68,6 +72,7 @@ class ContinuousFiles final : public RecordingSink {
   bool end_tick(std::int64_t now_ns, const std::optional<RecordedEvent>& /*event*/) override {
     return writer_.roll(now_ns);
   }
+  void begin_anew(std::int64_t now_ns) override { writer_.begin_anew(now_ns); }
   bool check() override { return writer_.check(); }
   bool close() override { return writer_.close(); }
   [[nodiscard]] bool ok() const noexcept override { return writer_.ok(); }

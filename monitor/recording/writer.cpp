@@ -138,18 +138,19 @@ void RecordingWriter::write(SideTopic topic, std::int64_t log_ns, std::int64_t s
 }
 
 bool RecordingWriter::is_due(std::int64_t log_ns) const noexcept {
-  const bool more_than_a_catalogue = mcap_->messages() > 1;
-  if (!ok() || !more_than_a_catalogue) return false;
   const bool large =
       options_.roll_bytes > 0 && mcap_->bytes() >= options_.roll_bytes + attached_bytes_;
   const bool long_enough = options_.roll_ns > 0 && log_ns - *began_ns_ >= options_.roll_ns;
   return large || long_enough;
 }
 
+bool RecordingWriter::roll(std::int64_t log_ns) { return is_due(log_ns) && begin_anew(log_ns); }
+
 // The next file never replaces one that is there, unless the first one may. A file that could not
 // be closed ends the recording.
-bool RecordingWriter::roll(std::int64_t log_ns) {
-  if (!is_due(log_ns) || !mcap_->close()) return false;
+bool RecordingWriter::begin_anew(std::int64_t log_ns) {
+  const bool more_than_a_catalogue = mcap_->messages() > 1;
+  if (!ok() || !more_than_a_catalogue || !mcap_->close()) return false;
   messages_before_ += mcap_->messages();
   bytes_before_ += mcap_->bytes();
   file_ = next_number(file_);

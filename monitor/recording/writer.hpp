@@ -77,6 +77,8 @@ class RecordingWriter {
   // called where a file may end: after a report and the messages that belong to it. Returns true
   // when it began a file.
   bool roll(std::int64_t log_ns);
+  // The same, whatever the size of the file is.
+  bool begin_anew(std::int64_t log_ns);
 
   // Metadata beside the description, in this file, at this place between its messages.
   void note(std::string_view name, const McapMap& values) {

@@ -68,6 +68,8 @@ std::optional<std::string> restart_needed(const Cell& before, const Cell& now) {
   if (!same_topics(before, now)) return restart("names of 'topics' change");
   if (!same_ros_outputs(before, now)) return restart("the outputs of 'ros2' change");
   if (!same_moveit_inputs(before, now)) return restart("MoveIt's messages under 'ros2' change");
+  if (before.ros.use_sim_time != now.ros.use_sim_time)
+    return restart("'use_sim_time' of 'ros2' changes");
   if (before.ros.trajectories != now.ros.trajectories)
     return restart("the trajectories of 'ros2' change");
   if (!has_robot(old) && has_robot(scene)) return restart("the cell gets its first robot");

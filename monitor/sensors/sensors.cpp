@@ -80,11 +80,19 @@ void Sensors::keep_map(State& before, State& state) {
 // Stamps come again after this machine's clock was set back. Samples from before say nothing about
 // frames from after it, and vice versa.
 void Sensors::note_time(std::int64_t came_ns) {
-  if (elapsed(came_ns, std::exchange(now_.realtime_ns, came_ns)) <= kClockSetBackNs) return;
+  if (elapsed(came_ns, std::exchange(now_.realtime_ns, came_ns)) > kClockSetBackNs) forget_past();
+}
+
+void Sensors::forget_past() {
   postures_.forget();
   frames_.forget();
   mounts_.forget();
   drop_waiting();
+}
+
+void Sensors::begin_anew() {
+  forget_past();
+  for (const std::unique_ptr<State>& state : states_) state->stream.begin_anew();
 }
 
 bool Sensors::is_ahead(std::int64_t stamp_ns, std::int64_t came_ns) const noexcept {
@@ -128,11 +136,11 @@ void Sensors::add_frame(const RawSensorMessage& message, const FrameDecoder& dec
   if (frame->cloud == nullptr) return;
   const MessageCloud& cloud = *frame->cloud;
   frame->came_ns = now_ns;
-  frame->stamp_ns = cloud.stamp_ns;
+  frame->stamp_ns = state.sensor.stamps == RosStamps::kSent ? message.sent_ns : cloud.stamp_ns;
   const FrameFault fault = state.stream.take(
-      cloud, {.stamp_ns = cloud.stamp_ns, .sent_ns = message.sent_ns, .writer = message.writer});
+      cloud, {.stamp_ns = frame->stamp_ns, .sent_ns = message.sent_ns, .writer = message.writer});
   if (cloud.image() != nullptr && fault != FrameFault::kUndecodable)
-    state.pairing.take_image(frame->stamp_ns);
+    state.pairing.take_image(cloud.stamp_ns);
   if (fault == FrameFault::kNoCameraInfo) {
     state.stream.take_back(fault);
     if (!state.without_info.cdr.empty()) ++state.not_built[static_cast<std::size_t>(fault)];
@@ -204,7 +212,7 @@ bool Sensors::is_ready(const State& state, const Waiting& frame, std::int64_t no
     return waited_ns >= std::max(options_.patience_ns, state.age_limit_ns / 2);
   return waited_ns >= options_.patience_ns ||
          (!has_no_transform && postures_.covers(frame.stamp_ns) &&
-          !state.pairing.is_awaited(frame.stamp_ns));
+          !state.pairing.is_awaited(frame.cloud->stamp_ns));
 }
 
 void Sensors::settle(std::int64_t now_ns, const IsUsed& is_used, const Use& use) {

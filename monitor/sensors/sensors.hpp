@@ -125,6 +125,8 @@ class Sensors {
   // Sets SensorsOptions::keep. Call this before the first message.
   void keep(std::function<void(BuiltFrame frame)> keep) { options_.keep = std::move(keep); }
 
+  // Stamps begin anew: none before says anything about those that follow.
+  void begin_anew();
   // Frames that wait are not built, since others are (rebuild()).
   void drop_waiting() noexcept;
   // True if a frame waits.
@@ -139,6 +141,7 @@ class Sensors {
   struct State;
 
   void note_time(std::int64_t came_ns);
+  void forget_past();
   void keep_map(State& before, State& state);
   [[nodiscard]] bool is_ahead(std::int64_t stamp_ns, std::int64_t came_ns) const noexcept;
   void add_transforms(const RawSensorMessage& message);

@@ -41,6 +41,12 @@ topic_descriptor<diagnostic_msgs_msg_dds__DiagnosticArray_>() noexcept {
   return diagnostic_msgs_msg_dds__DiagnosticArray__desc;
 }
 
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<rosgraph_msgs_msg_dds__Clock_>() noexcept {
+  return rosgraph_msgs_msg_dds__Clock__desc;
+}
+
 // The delivery of a ROS 2 topic, and what its endpoints say of its type in their USER_DATA (since
 // Iron: type description hashes, REP-2011).
 struct RosType {
@@ -61,6 +67,10 @@ inline constexpr RosType kRosJointState{
 inline constexpr RosType kRosString{
     &std_msgs_msg_dds__String__desc,
     "typehash=RIHS01_df668c740482bbd48fb39d76a70dfd4bd59db1288021743503259e948f6b1a18;", true, 1};
+inline constexpr RosType kRosClock{
+    &rosgraph_msgs_msg_dds__Clock__desc,
+    "typehash=RIHS01_692f7a66e93a3c83e71765d033b60349ba68023a8c689a79e48078bcb5c58564;", false,
+    128};
 inline constexpr RosType kRosTf{
     &tf2_msgs_msg_dds__TFMessage__desc,
     "typehash=RIHS01_e369d0f05a23ae52508854b66f6aa0437f3449d652e8cbf22d5abe85d020f087;", false,

@@ -120,13 +120,18 @@ class RosPackages(unittest.TestCase):
         self.assertEqual(line, ["clearanced", "cell.yaml", "--interface", "lo", "--peer", "10.0.0.1", "--peer", "10.0.0.2"])
 
     def test_the_robot_description_takes_the_place_of_a_cell(self):
-        robot = {"srdf": "r.srdf", "package": "arm=/opt/arm,tool=/opt/tool", "joint_states": "/arm/joints"}
+        robot = {"srdf": "r.srdf", "package": "arm=/opt/arm,tool=/opt/tool", "joint_states": "/arm/joints", "stamps": "sent"}
         line = command_line(outputs="markers", **robot)
         self.assertEqual(line[1:9], ["--robot-description", "/robot_description", "--srdf", "r.srdf", "--package", "arm=/opt/arm", "--package", "tool=/opt/tool"])
-        self.assertEqual(line[9:], ["--joint-states", "/arm/joints", "--interface", "ros", "--ros2", "markers"])
+        self.assertEqual(line[9:], ["--joint-states", "/arm/joints", "--stamps", "sent", "--interface", "ros", "--ros2", "markers"])
         options = subprocess.run([BUILD / "bin/clearanced", "--help"], capture_output=True, text=True, check=True).stdout
         for option in (each for each in line if each.startswith("--")):
             self.assertIn(f"  {option} TEXT", options)
+
+    def test_simulated_time_is_asked_for_by_the_name_that_ros_has_for_it(self):
+        self.assertNotIn("--use-sim-time", command_line(cell="cell.yaml"))
+        self.assertEqual(command_line(cell="cell.yaml", use_sim_time="True")[-1], "--use-sim-time")
+        self.assertEqual(self.check(use_sim_time="true").returncode, 0)
 
     def test_a_launch_file_without_rviz2_starts_nothing(self):
         self.assertEqual(len(started(cell="cell.yaml")), 1)

@@ -58,6 +58,8 @@ TEST(RosSettingsOfACell, AreRefusedWhereRos2WouldRefuseThem) {
               mistake_at("cell.yaml:4:8", "'marker'", "'markers'"));
   EXPECT_THAT(errors_of(cell_text("ros2: {stamps: never}\n" + kBoxes)),
               mistake_at("cell.yaml:4:16", "'never'"));
+  EXPECT_THAT(errors_of(cell_text("ros2: {use_sim_time: gazebo}\n" + kBoxes)),
+              mistake_at("cell.yaml:4:22", "'gazebo'"));
 }
 
 TEST(RosSettingsOfACell, DeclareTheGroupOfWhatMoveItAdds) {

@@ -62,6 +62,8 @@ TEST(SensorsOfACell, StateTheirShellsAndTheirRate) {
   EXPECT_EQ(sensor(", most_hz: 50").least_interval_ns, 20'000'000);
   EXPECT_EQ(sensor("").stamp_error_ns, 0);
   EXPECT_EQ(sensor(", stamp_error_ms: 20").stamp_error_ns, 20'000'000);
+  EXPECT_EQ(sensor("").stamps, RosStamps::kMessage);
+  EXPECT_EQ(sensor(", stamps: sent").stamps, RosStamps::kSent);
   const auto points = [](const std::string& keys) {
     return scene_of(with_sensor(kPoints + keys)).sensors[0];
   };

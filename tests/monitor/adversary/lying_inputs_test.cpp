@@ -123,5 +123,27 @@ TEST(TrueInputs, AreCertifiedNearlyAlwaysAndQuestionsAreAnswered) {
   }
 }
 
+// The time of all inputs is that of a simulation, which a tick of 1 kHz sees in steps of 0.1 and of
+// 10 ms. Who else sends an input is decided in the machine's time, so faults may last longer.
+TEST(SimulatedInputs, GiveNoFalseBoundAndMissNoZoneAtATenthAndTenTimesTheSpeed) {
+  const Cell cell = lying_cell();
+  for (const double factor : {0.1, 10.0}) {
+    SCOPED_TRACE(factor);
+    LyingRun run{.sending = {.seed = 5, .faults = {}, .loss = 0.1, .jitter = 2 * kMs}};
+    run.sending.factor = factor;
+    run.length = 3 * kSecond;
+    static_cast<void>(expect_truth(cell, run));
+    for (std::uint64_t seed = first_seed(); seed < first_seed() + seeds_of(2); ++seed) {
+      run.sending.seed = seed;
+      run.sending.faults = drawn_mix(seed);
+      std::erase_if(run.sending.faults, [](const Fault& fault) {
+        return fault.channel == Channel::kCommands || fault.channel == Channel::kPartner;
+      });
+      const Verdict verdict = judged(cell, run);
+      EXPECT_TRUE(verdict.is_true()) << explained(cell, run, verdict);
+    }
+  }
+}
+
 }  // namespace
 }  // namespace clearance::test::lies

@@ -28,6 +28,7 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
  public:
   LyingWorld(const Cell& cell, const LyingRun& run)
       : truth_(run.sending.seed, run.joints_went_far),
+        sending_(run.sending),
         cell_(&cell),
         judged_(&cell),
         ids_(cell.scene),
@@ -39,8 +40,9 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
                  .most_joints = 4096,
                  .use_sensor =
                      [this](const RawSensorMessage& message) {
-                       sensors_->add(message, {kStartOfLies + now_, kSecond + now_});
-                     }},
+                       sensors_->add(message, {kStartOfLies + now_, monotonic_ns()});
+                     },
+                 .time = time()},
                 [this](PoseBatch& batch) {
                   batches_.push_back(batch);
                   note(batch);
@@ -63,14 +65,15 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
     }
   }
 
-  std::int64_t realtime_ns() noexcept override { return kStartOfLies + now_; }
-  std::int64_t monotonic_ns() noexcept override { return kSecond + now_; }
-  std::int64_t steady_ns() noexcept override { return kSecond + now_; }
+  std::int64_t realtime_ns() noexcept override { return kStartOfLies + machine_; }
+  std::int64_t monotonic_ns() noexcept override { return kSecond + machine_; }
+  std::int64_t steady_ns() noexcept override { return kSecond + machine_; }
   void sleep_until(std::int64_t monotonic_ns) noexcept override {
     follow();
-    if (now_ >= 0 && random_.chance(kAsks)) ask();
-    while (kSecond + now_ < monotonic_ns) {
-      senders_.send(now_ += kMs);
+    if (now_ >= 0 && !sending_.factor && random_.chance(kAsks)) ask();
+    while (kSecond + machine_ < monotonic_ns) {
+      machine_ += kMs;
+      while (sending_.machine_time(now_ + kMs) <= machine_) senders_.send(now_ += kMs);
       has_built_ = false;
       build();
     }
@@ -95,10 +98,12 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
     judge_.await_command(waits ? commands_.moved_body() : kBodies, waits.value_or(now_));
     const Report* const told = partner_ ? partner_->tick(report) : nullptr;
     if (told != nullptr && partner_->differs()) judge_.note_partner(report.cycle);
-    judge_.judge(told == nullptr ? report : *told, now_);
+    const std::int64_t t = sending_.factor ? report.now_ns - kStartOfLies : now_;
+    judge_.judge(told == nullptr ? report : *told, t);
   }
   [[nodiscard]] Verdict verdict() const { return judge_.verdict(); }
   [[nodiscard]] FrameExchange& frames() noexcept { return frames_; }
+  [[nodiscard]] SimulatedTime* time() noexcept { return sending_.factor ? &time_ : nullptr; }
   // The loop must outlive this.
   void know(TickLoop& loop) noexcept { loop_ = &loop; }
 
@@ -112,7 +117,7 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
   }
   void build() {
     sensors_->settle(
-        kSecond + now_,
+        monotonic_ns(),
         [this](const SeenCloud* cloud) {
           return frames_.is_used(cloud) || (partner_ && partner_->is_used(cloud));
         },
@@ -201,10 +206,13 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
     }
     return motion;
   }
-  std::int64_t now_ = -kMs;  // ns since the start
+  std::int64_t now_ = -kMs;      // ns since the start, as bodies move
+  std::int64_t machine_ = -kMs;  // as the clocks of the machine say
+  SimulatedTime time_;
   TrueMotion truth_;
   std::deque<PoseBatch> batches_;
   PoseBatch given_;
+  const Sending& sending_;
   const Cell* cell_;    // that the loop ticks
   const Cell* judged_;  // of the reports
   SceneIds ids_;
@@ -233,7 +241,9 @@ Verdict judged(const Cell& cell, const LyingRun& run) {
   LyingWorld world(cell, run);
   TickLoop loop(
       cell.scene, world, {&world}, world,
-      {.max_ticks = static_cast<std::uint64_t>(run.length / kMs), .frames = &world.frames()});
+      {.max_ticks = static_cast<std::uint64_t>(run.sending.machine_time(run.length) / kMs),
+       .frames = &world.frames(),
+       .time = world.time()});
   world.know(loop);
   const std::atomic<bool> stop = false;
   loop.run(stop);

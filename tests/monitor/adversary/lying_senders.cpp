@@ -13,7 +13,8 @@
 namespace clearance::test::lies {
 namespace {
 
-constexpr std::uint64_t kOwners = 100, kRivals = 200, kMapMaker = 300;  // writers
+constexpr std::uint64_t kOwners = 100, kRivals = 200, kMapMaker = 300,
+                        kSimulation = 302;  // writers
 constexpr const char* kTfType = "tf2_msgs/msg/TFMessage";
 constexpr double kFarAway = 50.0;  // m
 // How far the second value of a joint in one message is from the first one, rad.
@@ -55,6 +56,7 @@ LyingSenders::LyingSenders(const Scene& scene, const TrueMotion& truth, const Se
 
 void LyingSenders::send(std::int64_t t) {
   keep_writers(t);
+  if (sending_.factor) under_way_.emplace(t, clock(t));
   if (t == 0) {
     const RosMessage far =
         transforms(start_ns_, start_ns_, {{"map", "far", {kFarAway, 0, 0}}}, "/tf_static");
@@ -116,7 +118,7 @@ void LyingSenders::speak_as_rival(Channel channel, const Rival& rival, std::int6
   Message sent = message(channel, spoken, true);
   sent.writer = writer_of(channel, true);
   sent.due = t;
-  sent.sent_ns = start_ns_ + t;
+  sent.sent_ns = start_ns_ + sending_.machine_time(t);
   under_way_.emplace(t, std::move(sent));
 }
 
@@ -253,6 +255,14 @@ LyingSenders::Message LyingSenders::frames(Channel channel, const Words& words) 
   return made;
 }
 
+LyingSenders::Message LyingSenders::clock(std::int64_t t) {
+  RosCdr cdr;
+  cdr.number(static_cast<std::int32_t>((start_ns_ + t) / kSecond))
+      .number(static_cast<std::uint32_t>((start_ns_ + t) % kSecond));
+  return {t, topic("/clock", "rosgraph_msgs/msg/Clock"), kSimulation,
+          start_ns_ + sending_.machine_time(t), cdr.bytes()};
+}
+
 std::uint32_t LyingSenders::topic(const std::string& name, const std::string& type) {
   const auto found = intake_.topic({name, type});
   EXPECT_TRUE(found) << name;
@@ -261,7 +271,7 @@ std::uint32_t LyingSenders::topic(const std::string& name, const std::string& ty
 
 void LyingSenders::post(Message message, std::int64_t t, const Told& told, Channel channel) {
   const std::size_t i = index(channel);
-  message.sent_ns = start_ns_ + t;
+  message.sent_ns = start_ns_ + sending_.machine_time(t);
   const auto delay = static_cast<std::int64_t>(
       random_.unit() * static_cast<double>(std::max(sending_.jitter, told.longest_delay)));
   message.due = std::max(t + delay, told.held_until);
@@ -277,7 +287,8 @@ void LyingSenders::post(Message message, std::int64_t t, const Told& told, Chann
 }
 
 void LyingSenders::deliver(std::int64_t t) {
-  const Now now{.realtime_ns = start_ns_ + t, .monotonic_ns = kSecond + t};
+  const std::int64_t machine = sending_.machine_time(t);
+  const Now now{.realtime_ns = start_ns_ + machine, .monotonic_ns = kSecond + machine};
   const auto waits = under_way_.upper_bound(t);
   for (auto each = under_way_.begin(); each != waits; ++each) {
     const Message& sent = each->second;

@@ -2,6 +2,7 @@
 // change what they say, and rivals say other things.
 #pragma once
 
+#include <cmath>
 #include <cstdint>
 #include <functional>
 #include <map>
@@ -22,6 +23,14 @@ struct Sending {
   double loss = 0.0;        // share of messages
   std::int64_t jitter = 0;  // ns, of the delay of messages, which stay in order
   bool wraps = false;       // continuous joints stay within plus or minus pi
+  // Time is that of a simulation, which sends /clock and runs so many times as fast as the clocks
+  // of the machine; none: it is theirs.
+  std::optional<double> factor = {};
+
+  // The time of the machine, ns since the start.
+  [[nodiscard]] std::int64_t machine_time(std::int64_t t) const {
+    return factor ? std::llround(static_cast<double>(t) / *factor) : t;
+  }
 };
 
 class LyingSenders {
@@ -29,7 +38,8 @@ class LyingSenders {
   // Receives the writers that exist, when they change.
   using Keep = std::function<void(std::vector<std::uint64_t> writers)>;
 
-  // `start_ns` is CLOCK_REALTIME at time 0. All arguments must outlive this.
+  // `start_ns` is CLOCK_REALTIME at time 0, and the simulated time. All arguments must outlive
+  // this.
   LyingSenders(const Scene& scene, const TrueMotion& truth, const Sending& sending,
                std::int64_t start_ns, Intake& intake, Keep keep);
 
@@ -76,6 +86,7 @@ class LyingSenders {
   void see(Channel channel, const Told& told, std::int64_t t, Words& words) const;
   [[nodiscard]] Message seen(Channel channel, const Words& words);
   [[nodiscard]] Message camera_info(std::int64_t t);
+  [[nodiscard]] Message clock(std::int64_t t);
   [[nodiscard]] Message message_of(const char* name, const char* type,
                                    const std::vector<std::byte>& cdr);
   void post(Message message, std::int64_t t, const Told& told, Channel channel);

@@ -129,9 +129,10 @@ void TruthJudge::await_command(std::size_t body, std::int64_t since) {
 }
 
 void TruthJudge::judge(const Report& report, std::int64_t t) {
+  tick_ = t > 0 ? t - t_ : kMs;
   t_ = t;
-  centres_[2] = t > 0 ? centres_[0] : truth_.centres(t - kMs);
-  centres_[1] = truth_.centres(t - kMs / 2);
+  centres_[2] = t > 0 ? centres_[0] : truth_.centres(t - tick_);
+  centres_[1] = truth_.centres(t - tick_ / 2);
   centres_[0] = truth_.centres(t);
   find_allowed(t);
   for (const PairReport& pair : report.pairs) judge_pair(pair);
@@ -228,7 +229,15 @@ void TruthJudge::judge_pair(const PairReport& pair) {
   const double nearer = error + reach_of(body_[of.first]) + reach_of(body_[of.second]);
   if (pair.upper < truth - nearer)
     note_false(Claim::kUpper, truth - nearer - pair.upper, said(since));
-  const double error_since = used_since_[pair.pair] + kBend;
+  double error_since = used_since_[pair.pair] + kBend;
+  // A new picture says nothing about the time before it: its pairs are swept from there on.
+  const std::array bodies{body_[of.first], body_[of.second]};
+  if (std::ranges::count(bodies, kEyeBody) != 0) {
+    for (const std::size_t body : bodies) {
+      error_since += TrueMotion::fastest(body) * 1e-9 *
+                     static_cast<double>(std::max<std::int64_t>(tick_ - kMs, 0));
+    }
+  }
   if (was_known && pair.swept_lower > since + error_since)
     note_false(Claim::kSwept, pair.swept_lower - since - error_since, said(since));
 }
@@ -296,7 +305,7 @@ void TruthJudge::judge_separation(const PairSeparation& pair) {
   const std::size_t human = first == 0 ? first : second, robot = first == 0 ? second : first;
   const TruePoint between = centres_[0][robot] - centres_[0][human];
   const TruePoint way = between / between.norm();
-  const long double per_second = 1e9L / static_cast<long double>(kMs);
+  const long double per_second = 1e9L / static_cast<long double>(tick_);
   const auto human_speed =
       static_cast<double>((centres_[0][human] - centres_[2][human]).dot(way) * per_second);
   const auto robot_speed =

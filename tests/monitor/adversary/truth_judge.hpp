@@ -116,6 +116,7 @@ class TruthJudge {
   const TrueMotion& truth_;
   const std::vector<Fault>& faults_;
   std::vector<std::size_t> body_;  // by object
+  std::int64_t tick_ = kMs;        // since the last tick
   std::int64_t t_ = 0, ended_ = 0, available_from_ = kStarts;
   std::size_t awaited_body_ = kBodies;  // await_command()
   // The bodies in this tick, in the middle of the time since the last one, and in the last one.

@@ -41,6 +41,7 @@ TEST(RestartNeeded, ForAllThatReadersWritersAndTheLoopAreMadeFor) {
       {"interface", [](Cell& cell) { cell.interface = "default"; }},
       {"topics", [](Cell& cell) { cell.topics.gradients = "x"; }},
       {"ros2", [](Cell& cell) { cell.ros.outputs.*kRosOutputs[0].topic = "/x"; }},
+      {"use_sim_time", [](Cell& cell) { cell.ros.use_sim_time = true; }},
       {"frame", [](Cell& cell) { cell.scene.objects[0].frame = "x"; }},
       {"first robot", [](Cell& cell) { cell.scene.robots.emplace_back(); }},
       {"commands", [](Cell& cell) { cell.commands.from = {"x"}; }},

@@ -24,6 +24,8 @@ ARGUMENTS = [
     ("srdf", "", "An SRDF with the pairs that are left out, where no cell is given"),
     ("package", "", "Folders of the URDF's packages, where no cell is given: NAME=FOLDER,NAME=FOLDER"),
     ("joint_states", "", "The topic of the joints, where no cell is given; empty: each topic joint_states"),
+    ("stamps", "", "The time of a joint state that counts, where no cell is given: message or sent"),
+    ("use_sim_time", "false", "Whether the time is that of a simulation, by /clock"),
     ("outputs", "all", "What is written for ROS 2, by the keys of `ros2:`, with commas between them"),
     ("interface", "ros", "The network: ros is that of ROS 2's variables; default, lo, or a card"),
     ("peer", "", "Addresses of other machines, with commas between them"),
@@ -40,8 +42,12 @@ ARGUMENTS = [
 # Arguments that name several things: the option of clearanced is repeated for each.
 LISTS = ("package", "peer", "commands", "questions", "outputs")
 OPTIONS = ("interface", "peer", "domain", "commands", "questions", "partner", "priority", "record", "outputs")
-OPTIONS_OF_ROBOT = ("srdf", "package", "joint_states")
+OPTIONS_OF_ROBOT = ("srdf", "package", "joint_states", "stamps")
 WRONG_ARGUMENTS, WRONG_CELL = 2, 3  # of clearanced's exit statuses: the next start ends alike
+
+
+def is_true(value):
+    return value.lower() in ("true", "1")
 
 
 def command_line(given):
@@ -54,7 +60,7 @@ def command_line(given):
         option = "--ros2" if name == "outputs" else "--" + name.replace("_", "-")
         for value in filter(None, given[name].split(",") if name in LISTS else [given[name]]):
             line += [option, value]
-    return line
+    return line + ["--use-sim-time"] * is_true(given["use_sim_time"])
 
 
 def optional_nodes(given):
@@ -66,7 +72,7 @@ def optional_nodes(given):
         ("rviz", "rviz2", "rviz2", {"arguments": ["-d", rviz]}),
         ("aggregator", "diagnostic_aggregator", "aggregator_node", {"parameters": [groups]}),
     ]:
-        if given[name].lower() in ("true", "1"):
+        if is_true(given[name]):
             get_package_prefix(package)
             nodes.append(Node(package=package, executable=executable, **more))
     return nodes

@@ -1,0 +1,78 @@
+// The time of a simulation, from the messages of its clock (/clock of ROS 2).
+//
+// A message states the simulated time at which it was sent. Until the next one comes, the time goes
+// on as between the last two, by at most the step between them: so it is never ahead of the clock
+// by more than one step. The same time again is a pause, in which nothing ages.
+//
+// A clock that goes back has begun anew. One that is silent for kSilentNs may be paused, or dead.
+// Both mean that an unknown time has passed (TickTime), and inputs count when they come again.
+#pragma once
+
+#include <array>
+#include <atomic>
+#include <cstdint>
+#include <optional>
+
+#include "monitor/inputs/tick_time.hpp"
+
+namespace clearance {
+
+// One thread calls note(), and the tick thread calls tick_time(). All other members are for any
+// thread. None allocates, throws or locks.
+class SimulatedTime {
+ public:
+  static constexpr std::int64_t kSilentNs = 1'000'000'000;
+  // A larger step is a jump: the time does not go on between the two.
+  static constexpr std::int64_t kLongestStepNs = 250'000'000;
+
+  enum class Change : std::uint8_t { kGoesOn, kFirst, kBack };
+  // A message of the clock: its time, its time of sending (CLOCK_REALTIME of the sender), and when
+  // it came (CLOCK_MONOTONIC).
+  Change note(std::int64_t time_ns, std::int64_t sent_ns, std::int64_t came_ns) noexcept;
+
+  // False before the first message.
+  [[nodiscard]] bool is_known() const noexcept { return count_.load() > 0; }
+  [[nodiscard]] bool is_silent(std::int64_t monotonic_ns) const noexcept;
+  // The number of times that the clock went back.
+  [[nodiscard]] std::uint64_t resets() const noexcept;
+  // The time of the last message; 0 before the first.
+  [[nodiscard]] std::int64_t clock_ns() const noexcept;
+  // The present time; 0 before the first message.
+  [[nodiscard]] std::int64_t now_ns(std::int64_t monotonic_ns) const noexcept;
+  // The time at which a message was sent, of the clock's machine or of one that has its time. What
+  // was sent before the messages that are kept counts as older than it is.
+  [[nodiscard]] std::int64_t at(std::int64_t sent_ns) const noexcept;
+
+  // The time of the coming tick: later than that of the tick before, unless an unknown time has
+  // passed. In a pause, it is later by 1 ns, since no two ticks may have one time.
+  [[nodiscard]] TickTime tick_time(std::int64_t monotonic_ns) noexcept;
+
+ private:
+  // What one message says.
+  struct Segment {
+    std::int64_t sent_ns = 0, came_ns = 0;
+    std::int64_t clock_ns = 0;  // its time
+    // The simulated time when it was sent, and until the next one comes at most. The former is that
+    // of the message, unless the time went on farther before.
+    std::int64_t begin_ns = 0, end_ns = 0;
+    std::int64_t step_ns = 0, interval_ns = 1;  // simulated and true time between the last two
+    std::uint64_t resets = 0;
+
+    [[nodiscard]] std::int64_t after(std::int64_t passed_ns) const noexcept;
+  };
+  static constexpr std::size_t kKept = 1024;  // 100 ms of a clock of 10 kHz
+  static constexpr std::size_t kWords = sizeof(Segment) / sizeof(std::int64_t);
+
+  // The message of this number, or nothing if it has been replaced.
+  [[nodiscard]] std::optional<Segment> segment(std::uint64_t number) const noexcept;
+  [[nodiscard]] Segment last() const noexcept;
+
+  std::array<std::array<std::atomic<std::int64_t>, kWords>, kKept> kept_{};
+  std::atomic<std::uint64_t> count_{0};
+  // Of the tick thread.
+  std::int64_t told_ns_ = 0;
+  std::uint64_t told_resets_ = 0;
+  bool told_silence_ = false;
+};
+
+}  // namespace clearance
