@@ -9,10 +9,11 @@
 
 namespace clearance {
 
-// SplitMix64 (Steele, Lea, Flood 2014).
+// SplitMix64 (Steele, Lea, Flood 2014). Streams of seeds that follow each other have nothing in
+// common: the step between two numbers is no multiple of the one between two seeds.
 class Random {
  public:
-  explicit Random(std::uint64_t seed) : state_(seed * 0x9e3779b97f4a7c15ULL + 1) { (void)next(); }
+  explicit Random(std::uint64_t seed) : state_(seed) { (void)next(); }
 
   std::uint64_t next() {
     std::uint64_t z = (state_ += 0x9e3779b97f4a7c15ULL);

@@ -1,5 +1,6 @@
 // MoveIt's messages to a cell in shares: all daemons hear them, in any order. That of the first
 // share does them, and the others take over its scene.
+#include <fmt/format.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
