@@ -30,6 +30,7 @@ class MachineStop {
     return share * share * rows_.back().distance;
   }
   [[nodiscard]] double time(double speed) const {
+    if (!(speed > 0.0)) return 0.0;
     if (rows_.empty()) return stated_.time(speed);
     const double share = speed / rows_.back().speed;
     return share < 1.0 ? between(speed, &StopPoint::time, 1.0) : share * rows_.back().time;
