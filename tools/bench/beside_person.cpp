@@ -24,6 +24,8 @@ namespace {
 
 constexpr std::size_t kJoints = 7;
 constexpr double kGrowth = 2.0;   // of the override, per second
+constexpr int kWalks = 3;         // of the person
+constexpr double kProgram = 0.6;  // of the velocity limit: the swing
 constexpr double kSlow = 0.25;    // of the program's speed, in the zone `slow`
 constexpr double kSpacing = 0.1;  // s: of the recorded postures that a motion goes through
 constexpr std::int64_t kFirst = 1'000'000'000'000;  // ns
@@ -276,29 +278,18 @@ void state_accelerations(const Motion& motion, Scene& scene) {
   }
 }
 
-struct Options {
-  int seeds = 3;
-  double seconds = 60.0;
-  double program = 0.0;  // of the velocity limit: the fastest joint of a motion; 0: as recorded
-};
-
-void print_motion(const std::string& name, Motion motion, Scene scene, const Options& options) {
-  const int seeds = options.seeds;
-  double fastest = 1e-9;
-  for (std::size_t j = 0; j < kJoints; ++j)
-    fastest = std::max(fastest, motion.largest()[0][j] / scene.variables[j].max_speed);
-  if (options.program > 0.0) motion.speed_up(options.program / fastest);
+void print_motion(const std::string& name, const Motion& motion, Scene scene, double seconds) {
   state_accelerations(motion, scene);
   print(stdout, "| {} | {:.2f} | {:.1f} |", name, std::ranges::max(motion.largest()[0]),
         std::ranges::max(motion.largest()[1]));
   double separation = 0.0;
   for (const Obeyed obeyed : {Obeyed::kZones, Obeyed::kSeparation, Obeyed::kStops}) {
     Outcome mean;
-    for (int seed = 1; seed <= seeds; ++seed) {
+    for (int seed = 1; seed <= kWalks; ++seed) {
       const Outcome once =
-          run_once(scene, motion, obeyed, static_cast<std::uint64_t>(seed), options.seconds);
-      mean.at_full_speed += once.at_full_speed / seeds;
-      mean.progress += once.progress / seeds;
+          run_once(scene, motion, obeyed, static_cast<std::uint64_t>(seed), seconds);
+      mean.at_full_speed += once.at_full_speed / kWalks;
+      mean.progress += once.progress / kWalks;
       mean.least_m = std::min(mean.least_m, once.least_m);
     }
     print(stdout, " {:.0f} % | {:.2f} | {:.2f} |", 100.0 * mean.at_full_speed, mean.progress,
@@ -315,8 +306,7 @@ void print_motion(const std::string& name, Motion motion, Scene scene, const Opt
 int run_stops(int argc, char** argv) {
   std::filesystem::path file = CLEARANCE_CELLS "/stops.yaml";
   std::vector<std::filesystem::path> motions;
-  Options options;
-  bool keeps_path = false;
+  double seconds = 60.0;
   CommandLine line{
       "An arm gets through its motion beside a person who walks past, as fast as "
       "distance zones, S_p or its stops allow.",
@@ -324,33 +314,27 @@ int run_stops(int argc, char** argv) {
   line.add({
       {"--cell", &file, "The cell: an arm of seven joints, a person, zones `stop` and `slow`"},
       {"--motion", &motions, "A CSV with the time in ns and seven positions; repeatable"},
-      {"--seeds", &options.seeds, "Walks of the person", positive_number(), shown()},
-      {"--program", &options.program,
-       "Speed of the fastest joint, of its limit; 0: recorded motions as they are",
-       number_from_zero(), shown()},
-      {"--kept", &keeps_path, "The path is kept in stops, whatever the cell says"},
-      {"--seconds", &options.seconds, "Length of each run", positive_number(), shown()},
+      {"--seconds", &seconds, "Length of each run", positive_number(), shown()},
   });
   if (const auto done = parse(line, argc, argv)) return *done;
   const std::optional<Cell> cell = cell_or_errors(read_cell(file));
   if (!cell) return 3;
-  Scene scene = cell->scene;
+  const Scene& scene = cell->scene;
   if (scene.robots.size() != 1 || scene.variables.size() <= kJoints ||
       scene.robots[0].stopping.max_accelerations.empty()) {
     print(stderr, "--stops: {} has not one arm of seven joints with `stopping`\n", file.string());
     return 3;
   }
-  scene.robots[0].stopping.keeps_path |= keeps_path;
-  Options of_swing = options;
-  if (of_swing.program == 0.0) of_swing.program = 0.6;
-  print_motion("swing", swing(), scene, of_swing);
+  Motion first = swing();
+  first.speed_up(kProgram * scene.variables[0].max_speed / first.largest()[0][0]);
+  print_motion("swing", first, scene, seconds);
   for (const std::filesystem::path& each : motions) {
     const std::optional<Motion> motion = read_motion(each, scene);
     if (!motion) {
       print(stderr, "--stops: {} is no CSV with times and seven positions\n", each.string());
       return 1;
     }
-    print_motion(each.stem().string(), *motion, scene, options);
+    print_motion(each.stem().string(), *motion, scene, seconds);
   }
   return 0;
 }
