@@ -13,6 +13,7 @@
 
 #include "monitor/app/print.hpp"
 #include "monitor/files/build_info.hpp"
+#include "tools/bench/beside_person.hpp"
 #include "tools/bench/cells.hpp"
 #include "tools/bench/peers/fcl_motions.hpp"
 #include "tools/bench/peers/peers.hpp"
@@ -28,6 +29,7 @@ constexpr const char* kHelp =
 Usage: clearance-bench [OPTIONS]
        clearance-bench --suite [...]  all rivals on one set of cases with exact answers; --suite --help has its options
        clearance-bench --ask [...]    whole motions, certified, beside FCL; --ask --help has its options
+       clearance-bench --stops [...]  an arm beside a walking person, by zones, S_p and stops; --stops --help
   --queries       the rows that tools/bench/report shows in report.md
   --curved        the rows of curved bodies and of every pair of kinds, with their peers
   --tick          the rows tick/
@@ -123,6 +125,8 @@ int run(int argc, char** argv) {
   if (argc > 1 && std::string_view(argv[1]) == "--suite") {
     return clearance::bench::run_suite(std::vector<std::string>(argv + 2, argv + argc));
   }
+  if (argc > 1 && std::string_view(argv[1]) == "--stops")
+    return clearance::bench::run_stops(argc - 1, argv + 1);
 #ifdef CLEARANCE_BENCH_FCL
   if (argc > 1 && std::string_view(argv[1]) == "--ask")
     return clearance::bench::run_ask(argc - 1, argv + 1);

@@ -10,6 +10,7 @@
 
 #include "config/scene/scene.hpp"
 #include "tests/config/cells.hpp"
+#include "tests/monitor/ask/printed_stops.hpp"
 #include "tests/monitor/tick/fresh_distance.hpp"
 #include "tests/shared/places.hpp"
 #include "tests/shared/random.hpp"
@@ -42,35 +43,6 @@ inline bool moves(const Scene& scene, const Robot& robot, std::size_t joint) {
   return variables_of(of.type) == 1 && scene.variables[of.variable].name == of.name;
 }
 
-// Random stops of a robot: tables, decelerations and times.
-inline RobotStops drawn_stops(const Scene& scene, const Robot& robot, Random& random) {
-  RobotStops stops;
-  stops.reaction = random.uniform(0.0, 0.1);
-  stops.keeps_path = random.uniform(0.0, 1.0) < 0.5;
-  const bool may_turn = random.uniform(0.0, 1.0) < 0.4;
-  for (const RobotJoint& joint : robot.joints) {
-    stops.joints.emplace_back();
-    stops.max_accelerations.push_back(kInfinity);
-    if (variables_of(joint.type) != 1) continue;
-    if (may_turn) stops.max_accelerations.back() = random.uniform(0.0, 3.0);
-    const double full = scene.variables[joint.variable].max_speed;
-    const double kind = random.uniform(0.0, 3.0);
-    if (kind < 1.0) {
-      stops.joints.back() = JointStop::by_deceleration(random.uniform(1.0, 20.0) * full);
-    } else if (kind < 2.0) {
-      stops.joints.back() = JointStop::by_time(random.uniform(0.01, 0.3));
-    } else {
-      std::vector<StopPoint> points;
-      for (const double share : {0.33, 0.66, 1.0}) {
-        const double time = random.uniform(0.05, 0.4);
-        points.push_back({share * full, share * full * time * random.uniform(0.2, 1.0), time});
-      }
-      stops.joints.back() = JointStop::by_table(points);
-    }
-  }
-  return stops;
-}
-
 // How far a joint has come after a time of its stop from a speed, by some law that fits its table:
 // it needs no more than the table says, and often less.
 inline double went(const JointStop& stop, double speed, double t, Random& random) {
@@ -83,15 +55,57 @@ inline double went(const JointStop& stop, double speed, double t, Random& random
 }
 
 inline const std::string kSomeStops = "{reaction_ms: 50, path: kept, time_ms: 200}";
-inline constexpr double kMargin = 0.07;  // m, of the zone between both arms
+inline constexpr double kMargin = 0.07;        // m, of the zone between both arms
+inline constexpr double kPersonMargin = 0.05;  // m, between the left arm and the person
 
-// The arms stop in drawn manners. The zone between them has a margin.
-inline Scene drawn_scene(std::uint64_t seed) {
-  Scene scene = arms_that_stop(kSomeStops, kSomeStops);
+// Arms that stop in drawn manners, as their cell states them, and how the true machines stop.
+struct DrawnArms {
+  Scene scene;
+  std::vector<std::vector<MachineStop>> machines;  // by robot and joint
+};
+
+// `reaction`: draws that of an arm, s. `turns`: draws the accelerations of an arm; infinity: none
+// is stated.
+template <class Reaction, class Turns>
+DrawnArms drawn_arms(Random& random, const Reaction& reaction, const Turns& turns) {
+  const PrintedStops left(reaction(), random), right(reaction(), random);
+  DrawnArms arms;
+  Scene& scene = arms.scene =
+      arms_that_stop(left.text(), right.text(),
+                     "  - {name: walks, between: [left, person], stops: {margin: 0.05}}\n");
+  std::ranges::find(scene.zones, "slow", &Zone::name)->stop_margin = kMargin;
+  for (Robot& robot : scene.robots) {
+    RobotStops& stops = robot.stopping;
+    stops.max_accelerations.clear();
+    const double most = turns();
+    for (std::size_t j = 0; j < robot.joints.size(); ++j)
+      stops.max_accelerations.push_back(most < kInfinity ? most * random.uniform(0.3, 1.0)
+                                                         : kInfinity);
+  }
+  for (const Robot& robot : scene.robots) {
+    auto rows = (arms.machines.empty() ? left : right).rows().begin();
+    auto& machine = arms.machines.emplace_back();
+    for (std::size_t j = 0; j < robot.joints.size(); ++j)
+      machine.emplace_back(robot.stopping.joints[j],
+                           moves(scene, robot, j) ? *rows++ : std::vector<StopPoint>());
+  }
+  return arms;
+}
+inline DrawnArms drawn_arms(std::uint64_t seed) {
   Random random(seed);
-  for (Robot& robot : scene.robots) robot.stopping = drawn_stops(scene, robot, random);
-  scene.zones.front().stop_margin = kMargin;
-  return scene;
+  return drawn_arms(
+      random, [&] { return 1e-3 * random.integer(0, 100); },
+      [&] { return random.chance(0.4) ? random.uniform(0.0, 3.0) : kInfinity; });
+}
+inline Scene drawn_scene(std::uint64_t seed) { return drawn_arms(seed).scene; }
+
+// The largest margin of a pair in zones with `stops`, m.
+inline double margin_of(const Scene& scene, std::uint32_t pair) {
+  double margin = 0.0;
+  for (const Zone& zone : scene.zones)
+    if (zone.stop_margin && std::ranges::find(zone.pairs, pair) != zone.pairs.end())
+      margin = std::max(margin, *zone.stop_margin);
+  return margin;
 }
 
 // Fixed links never move, so no stop concerns them.

@@ -26,25 +26,15 @@ using test::kStart, test::kTick;
 using test::ObeyingRobot;
 
 constexpr double kOracle = 2e-9;        // m
-constexpr double kPersonMargin = 0.1;   // m
 constexpr double kFastest = 20.0;       // m/s: no two points of this cell approach faster
 constexpr std::size_t kTicks = 1'500;   // of a run
 constexpr std::size_t kPostures = 300;  // drawn until one is clear
 
 // The arms stop in drawn manners: with accelerations, they reach goals; without, they go straight.
-Scene drawn_cell(Random& random) {
-  Scene scene =
-      test::arms_that_stop(test::kSomeStops, test::kSomeStops,
-                           "  - {name: walks, between: [left, person], stops: {margin: 0.1}}\n");
-  for (Robot& robot : scene.robots) {
-    RobotStops& stops = robot.stopping = test::drawn_stops(scene, robot, random);
-    stops.reaction = ObeyingRobot::kStep * random.integer(0, 100);
-    const double turns = random.chance(0.3) ? random.log_uniform(0.05, 1.0) : kInfinity;
-    for (double& most : stops.max_accelerations) most = turns;
-  }
-  const auto between = std::ranges::find(scene.zones, "slow", &Zone::name);
-  between->stop_margin = test::kMargin;
-  return scene;
+test::DrawnArms drawn_cell(Random& random) {
+  return test::drawn_arms(
+      random, [&] { return ObeyingRobot::kStep * random.integer(0, 100); },
+      [&] { return random.chance(0.3) ? random.log_uniform(0.05, 1.0) : kInfinity; });
 }
 
 // Walks towards places near the arms, at up to 1.6 m/s.
@@ -87,7 +77,7 @@ class Walker {
   std::deque<Vec3> past_;
 };
 
-struct Judged {
+struct JudgedRuns {
   std::size_t instants = 0, nearer = 0, moving = 0, slowed = 0, stops = 0;
   double least_left = kInfinity;  // m: of distances less their margins
   std::string worst;
@@ -98,19 +88,20 @@ class SimulatedCell {
  public:
   explicit SimulatedCell(std::uint64_t seed, std::size_t late = 0)
       : random_(seed),
-        scene_(drawn_cell(random_)),
+        arms_(drawn_cell(random_)),
         exact_(test::drawn_errors(scene_, random_)),
         age_(random_.chance(0.5) ? 0 : static_cast<std::size_t>(random_.integer(1, 10))),
         walker_(random_.next(), age_),
         monitor_(scene_) {
     for (std::uint32_t r = 0; r < scene_.robots.size(); ++r)
-      robots_.emplace_back(scene_, r, age_, late, random_.next());
+      robots_.emplace_back(arms_, r, age_, late, random_.next());
     const std::vector<std::uint32_t> near = kept_nearer(scene_, 0.0);
     for (std::uint32_t p = 0; p < scene_.pairs.size(); ++p)
-      if (!std::ranges::binary_search(near, p)) add_pair(p);
+      if (!std::ranges::binary_search(near, p))
+        pairs_.push_back({.pair = p, .margin = test::margin_of(scene_, p)});
   }
 
-  void go(Judged& judged) {
+  void go(JudgedRuns& judged) {
     if (!begin()) return;
     for (std::size_t t = 0; t < kTicks; ++t) {
       const std::vector<RobotStop>& stops = monitor_.tick(poses(), joints(), now_).stops;
@@ -134,14 +125,6 @@ class SimulatedCell {
     double margin = 0.0;
     double clear_for = 0.0;  // s
   };
-
-  void add_pair(std::uint32_t p) {
-    double margin = 0.0;
-    for (const Zone& zone : scene_.zones)
-      if (zone.stop_margin && std::ranges::find(zone.pairs, p) != zone.pairs.end())
-        margin = std::max(margin, *zone.stop_margin);
-    pairs_.push_back({.pair = p, .margin = margin});
-  }
 
   // Postures from which all of the arms would stop clear.
   bool begin() {
@@ -177,7 +160,7 @@ class SimulatedCell {
     return samples;
   }
 
-  void judge(Judged& judged) {
+  void judge(JudgedRuns& judged) {
     std::vector<double> at(scene_.variables.size(), 0.0);
     for (const ObeyingRobot& robot : robots_)
       for (std::size_t j = 0; j < robot.joints(); ++j) at[robot.variable(j)] = robot.position(j);
@@ -203,7 +186,8 @@ class SimulatedCell {
   }
 
   Random random_;
-  Scene scene_;
+  test::DrawnArms arms_;
+  const Scene& scene_ = arms_.scene;
   test::DrawnErrors exact_;
   std::size_t age_;
   Walker walker_;
@@ -214,7 +198,7 @@ class SimulatedCell {
 };
 
 TEST(ObeyedStops, ComeNearerIfTheBrakesActLaterThanStated) {
-  Judged judged;
+  JudgedRuns judged;
   for (std::uint64_t seed = 1; seed <= 16; ++seed) SimulatedCell(seed, 60).go(judged);
   EXPECT_GT(judged.nearer, 0u);
 }
@@ -223,9 +207,9 @@ TEST(ObeyedStops, ComeNearerIfTheBrakesActLaterThanStated) {
 TEST(ObeyedStops, KeepEachMarginUntilTheRobotStands) {
   const char* stated = std::getenv("CLEARANCE_STOPS_SEED");
   const std::uint64_t first = stated == nullptr ? 1 : std::strtoull(stated, nullptr, 10);
-  Judged all;
+  JudgedRuns all;
   for (std::uint64_t seed = first; seed < first + repeats(80); ++seed) {
-    Judged judged;
+    JudgedRuns judged;
     SimulatedCell(seed).go(judged);
     EXPECT_EQ(judged.nearer, 0u) << "seed " << seed << ", " << judged.least_left << " m, "
                                  << judged.worst;

@@ -21,14 +21,16 @@ class ObeyingRobot {
 
   // `age`: of the states that reports read, in ticks. `late`: of its commands, beyond what is
   // stated.
-  ObeyingRobot(const Scene& scene, std::uint32_t robot, std::size_t age, std::size_t late,
+  ObeyingRobot(const DrawnArms& arms, std::uint32_t robot, std::size_t age, std::size_t late,
                std::uint64_t seed)
-      : scene_(scene), robot_(scene.robots[robot]), age_(age), random_(seed) {
+      : robot_(arms.scene.robots[robot]), age_(age), random_(seed) {
+    const Scene& scene = arms.scene;
     const RobotStops& stops = robot_.stopping;
     reaction_ = static_cast<std::size_t>(std::lround(stops.reaction / kStep)) + late;
     for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
       if (!moves(scene, robot_, j)) continue;
-      Joint joint{.of = &scene.variables[robot_.joints[j].variable], .stop = &stops.joints[j]};
+      Joint joint{.of = &scene.variables[robot_.joints[j].variable],
+                  .stop = &arms.machines[robot][j]};
       joint.variable = robot_.joints[j].variable;
       if (!stops.max_accelerations.empty()) joint.acceleration = stops.max_accelerations[j];
       accelerates_ = joint.acceleration < kInfinity;
@@ -90,7 +92,7 @@ class ObeyingRobot {
  private:
   struct Joint {
     const JointVariable* of = nullptr;
-    const JointStop* stop = nullptr;
+    const MachineStop* stop = nullptr;
     std::uint32_t variable = 0;
     double acceleration = kInfinity;
     double position = 0.0, velocity = 0.0;  // of its own profile: before it is scaled
@@ -239,7 +241,6 @@ class ObeyingRobot {
     }
   }
 
-  const Scene& scene_;
   const Robot& robot_;
   std::size_t age_, reaction_ = 0, tick_ = 0, stood_ = 0;  // ticks
   Random random_;
