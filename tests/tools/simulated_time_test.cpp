@@ -18,8 +18,8 @@
 namespace clearance::test {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000, kSecond = 1000 * kMs;
-constexpr std::int64_t kFirstRun = 1000 * kSecond, kSecondRun = 2 * kSecond;
+constexpr std::int64_t kMillisecond = 1'000'000, kOneSecond = 1000 * kMillisecond;
+constexpr std::int64_t kFirstRun = 1000 * kOneSecond, kSecondRun = 2 * kOneSecond;
 constexpr int kStepMs = 4;            // between two messages of the clock
 constexpr double kFastest = 0.7;      // of the wall, m/s
 constexpr double kDepthError = 1e-6;  // of float32, and of the place of the camera
@@ -50,8 +50,8 @@ class SimulatedDaemon : public DaemonCameras {
   }
   void tell_time() {
     Sample<rosgraph_msgs_msg_dds__Clock_> message;
-    message->clock = {static_cast<std::int32_t>(now_ / kSecond),
-                      static_cast<std::uint32_t>(now_ % kSecond)};
+    message->clock = {static_cast<std::int32_t>(now_ / kOneSecond),
+                      static_cast<std::uint32_t>(now_ % kOneSecond)};
     ASSERT_EQ(dds_write(clock_, &*message), DDS_RETCODE_OK);
   }
   // The simulation goes on for the true time since the last call.
@@ -127,7 +127,7 @@ TEST_P(SimulatedDaemons, CertifyDistancesAtTheSimulatedTimeThroughAPauseAndANewB
       },
       [&] { return std::chrono::steady_clock::now() > end; });
   EXPECT_TRUE(is_known()) << daemon->output();
-  EXPECT_LT(report->now_ns, paused + 250 * kMs + kMs);
+  EXPECT_LT(report->now_ns, paused + 250 * kMillisecond + kMillisecond);
   EXPECT_FALSE(daemon->told("sim-time-silent")) << daemon->output();
   last_ = std::chrono::steady_clock::now();
   play_until_checked(50);
@@ -171,7 +171,7 @@ TEST_F(SimulatedDaemon, UsesTheTimeOfSendingForACameraThatStatesIt) {
   const auto step = [&] {
     go_on();
     frames_.send_at(now_, {{"map", "rail", {0, 0, kHeight}}});
-    camera_.send_image({.wall = 2.0, .ball = {}}, 77 * kSecond + steps_);
+    camera_.send_image({.wall = 2.0, .ball = {}}, 77 * kOneSecond + steps_);
   };
   ASSERT_TRUE(step_until(kStepMs, step, [&] { return is_known(); })) << daemon->output();
   EXPECT_LE(ball_pair().lower, 2.0 - kRadius - kError - 1.0 + kDepthError);

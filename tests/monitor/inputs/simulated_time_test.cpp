@@ -14,7 +14,7 @@
 namespace clearance {
 namespace {
 
-constexpr std::int64_t kMs = 1'000'000, kSecond = 1000 * kMs;
+constexpr std::int64_t kMillisecond = 1'000'000, kSecond = 1000 * kMillisecond;
 constexpr std::int64_t kAhead = 1'700'000'000 * kSecond;  // of CLOCK_REALTIME before the other one
 
 // A simulation of one speed, which sends its time every `step` of simulated time.
@@ -53,11 +53,12 @@ class SimulatedTimes : public testing::TestWithParam<double> {};
 INSTANTIATE_TEST_SUITE_P(Factors, SimulatedTimes, testing::Values(0.1, 1.0, 10.0));
 
 TEST_P(SimulatedTimes, GoOnBetweenTwoMessagesAndNotBeyondTheNextOne) {
-  Simulation of(GetParam(), kMs);
+  Simulation of(GetParam(), kMillisecond);
   of.play(6 * kSecond);
   for (int tenths = 0; tenths <= 30; ++tenths) {
     const std::int64_t passed = of.interval() * tenths / 10;
-    const double expected = std::min(of.after(passed), static_cast<double>(of.clock() + kMs));
+    const double expected =
+        std::min(of.after(passed), static_cast<double>(of.clock() + kMillisecond));
     // The last message came one interval ago.
     const std::int64_t came = of.now() - of.interval();
     EXPECT_NEAR(static_cast<double>(of.time.now_ns(came + passed)), expected, 2.0) << tenths;
@@ -66,10 +67,10 @@ TEST_P(SimulatedTimes, GoOnBetweenTwoMessagesAndNotBeyondTheNextOne) {
 
 // By the ticks of a loop of 1 kHz, at any rate of the clock.
 TEST_P(SimulatedTimes, NeverGoBackNorStandStillFromTickToTick) {
-  for (const std::int64_t step : {kMs, 4 * kMs, 25 * kMs}) {
+  for (const std::int64_t step : {kMillisecond, 4 * kMillisecond, 25 * kMillisecond}) {
     Simulation of(GetParam(), step);
     std::int64_t before = -1;
-    for (std::int64_t t = 5 * kSecond; t < 8 * kSecond; t += kMs) {
+    for (std::int64_t t = 5 * kSecond; t < 8 * kSecond; t += kMillisecond) {
       of.play(t);
       const std::int64_t now = of.time.tick_time(t).now_ns;
       ASSERT_GT(now, before);
@@ -84,7 +85,7 @@ TEST_P(SimulatedTimes, NeverGoBackNorStandStillFromTickToTick) {
 }
 
 TEST_P(SimulatedTimes, OfMessagesAreThoseAtWhichTheyWereSent) {
-  Simulation of(GetParam(), 10 * kMs);
+  Simulation of(GetParam(), 10 * kMillisecond);
   of.play(7 * kSecond);
   const std::int64_t last = of.now() - of.interval();
   for (int i = 0; i < 100; ++i) {
@@ -100,51 +101,51 @@ TEST(SimulatedTime, IsNotKnownBeforeTheFirstMessage) {
   EXPECT_FALSE(time.is_silent(50 * kSecond)) << "nothing has begun that could be silent";
   EXPECT_EQ(time.now_ns(50 * kSecond), 0);
   EXPECT_EQ(time.note(3, kAhead, 5 * kSecond), SimulatedTime::Change::kFirst);
-  EXPECT_EQ(time.now_ns(5 * kSecond + 100 * kMs), 3) << "no step is known yet";
+  EXPECT_EQ(time.now_ns(5 * kSecond + 100 * kMillisecond), 3) << "no step is known yet";
 }
 
 // A paused simulation repeats its time. Ages stand still, to within 1 ns a tick.
 TEST(SimulatedTime, StandsStillInAPause) {
-  Simulation of(1.0, kMs);
+  Simulation of(1.0, kMillisecond);
   of.play(6 * kSecond);
   const std::int64_t paused = of.clock();
   for (int i = 0; i < 5000; ++i) {
-    of.pass(kMs);
+    of.pass(kMillisecond);
     of.say(paused);
     EXPECT_FALSE(of.time.is_silent(of.now()));
     const std::int64_t now = of.time.tick_time(of.now()).now_ns;
-    EXPECT_LE(now, paused + kMs + 5001);
+    EXPECT_LE(now, paused + kMillisecond + 5001);
   }
-  of.play(of.now() + 100 * kMs);
-  EXPECT_GE(of.time.tick_time(of.now()).now_ns, paused + 99 * kMs);
+  of.play(of.now() + 100 * kMillisecond);
+  EXPECT_GE(of.time.tick_time(of.now()).now_ns, paused + 99 * kMillisecond);
 }
 
 // A silent clock may be that of a dead simulation.
 TEST(SimulatedTime, MakesAnUnknownTimePassOnceAfterASilence) {
-  Simulation of(1.0, kMs);
+  Simulation of(1.0, kMillisecond);
   of.play(6 * kSecond);
   int back = 0;
   std::int64_t before = of.time.tick_time(of.now()).now_ns;
   for (int i = 0; i < 3000; ++i) {
-    of.pass(kMs);
+    of.pass(kMillisecond);
     const std::int64_t now = of.time.tick_time(of.now()).now_ns;
     if (now < before) {
       ++back;
       EXPECT_NEAR(i, 1000, 2) << "after a second";
       EXPECT_EQ(now, before - 1);
     }
-    EXPECT_LE(now, of.clock() + kMs + 3000) << "no wall time passes";
+    EXPECT_LE(now, of.clock() + kMillisecond + 3000) << "no wall time passes";
     before = now;
   }
   EXPECT_EQ(back, 1);
   EXPECT_TRUE(of.time.is_silent(of.now()));
-  of.play(of.now() + 100 * kMs);
+  of.play(of.now() + 100 * kMillisecond);
   EXPECT_FALSE(of.time.is_silent(of.now()));
   EXPECT_GT(of.time.tick_time(of.now()).now_ns, before);
 }
 
 TEST(SimulatedTime, MakesAnUnknownTimePassIfTheSimulationBeginsAnew) {
-  Simulation of(1.0, kMs);
+  Simulation of(1.0, kMillisecond);
   of.play(6 * kSecond);
   const std::int64_t before = of.time.tick_time(of.now()).now_ns;
   of.say(2 * kSecond);
@@ -152,7 +153,7 @@ TEST(SimulatedTime, MakesAnUnknownTimePassIfTheSimulationBeginsAnew) {
   EXPECT_EQ(of.time.tick_time(of.now()).now_ns, 2 * kSecond);
   // Once more, and forward beyond the time before: between two ticks, this shows all the same.
   of.say(kSecond);
-  of.pass(kMs);
+  of.pass(kMillisecond);
   of.say(200 * kSecond);
   EXPECT_LT(of.time.tick_time(of.now()).now_ns, 2 * kSecond);
   EXPECT_EQ(of.time.tick_time(of.now()).now_ns, 200 * kSecond);
@@ -161,19 +162,19 @@ TEST(SimulatedTime, MakesAnUnknownTimePassIfTheSimulationBeginsAnew) {
 }
 
 TEST(SimulatedTime, JumpsForwardWithoutGoingOnAsFast) {
-  Simulation of(1.0, kMs);
+  Simulation of(1.0, kMillisecond);
   of.play(6 * kSecond);
   const std::int64_t jumped = of.clock() + 50 * kSecond;
   of.say(jumped);
   EXPECT_EQ(of.time.now_ns(of.now()), jumped);
-  EXPECT_EQ(of.time.now_ns(of.now() + 500 * kMs), jumped);
+  EXPECT_EQ(of.time.now_ns(of.now() + 500 * kMillisecond), jumped);
 }
 
 // Of a message from before all that is known, nothing but that it is old.
 TEST(SimulatedTime, OfAMessageFromBeforeTheFirstOneIsOlderThanIt) {
-  Simulation of(10.0, kMs);
+  Simulation of(10.0, kMillisecond);
   of.say(of.clock());
-  for (const std::int64_t ago : {kMs, kSecond, 1000 * kSecond}) {
+  for (const std::int64_t ago : {kMillisecond, kSecond, 1000 * kSecond}) {
     EXPECT_LE(of.time.at(kAhead + of.now() - ago), of.clock() - 10 * std::min(ago, 100 * kSecond));
   }
   EXPECT_EQ(SimulatedTime().at(kAhead), 0);
@@ -186,18 +187,20 @@ TEST(SimulatedTime, NeverGoesBackOrFartherAheadThanAStepWhateverComes) {
     SimulatedTime time;
     std::int64_t now = kSecond, clock = 10 * kSecond, longest = 0, before = -1;
     for (int i = 0; i < 2000; ++i) {
-      now += random.integer(1, 3) * kMs;
+      now += random.integer(1, 3) * kMillisecond;
       if (random.chance(0.7)) {
-        const std::int64_t step = random.chance(0.1) ? 0 : random.integer(1, 40) * kMs / 4;
+        const std::int64_t step = random.chance(0.1) ? 0 : random.integer(1, 40) * kMillisecond / 4;
         longest = std::max(longest, step);
-        const std::int64_t sent = kAhead + now + random.integer(-5, 5) * kMs +
+        const std::int64_t sent = kAhead + now + random.integer(-5, 5) * kMillisecond +
                                   (random.chance(0.01) ? -3600 * kSecond : 0);
         time.note(clock += step, sent, now);
       }
       const std::int64_t told = time.tick_time(now).now_ns;
       ASSERT_GT(told, before);
       ASSERT_LE(told, clock + longest + i);
-      if (time.is_known()) ASSERT_GE(told, clock);
+      if (time.is_known()) {
+        ASSERT_GE(told, clock);
+      }
       before = told;
     }
   }
