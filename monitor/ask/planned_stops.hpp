@@ -1,5 +1,5 @@
 // The robot that a question moves may be told to stop at any instant of its motion: where it may be
-// until it stands, and when. STOPS.md, "Stops of a planned motion", has the region with its proof.
+// until it stands, and when. PLANNED_STOPS.md has the region with its proof.
 #pragma once
 
 #include <cstdint>

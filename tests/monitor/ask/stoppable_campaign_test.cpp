@@ -322,7 +322,7 @@ TEST(StoppableCampaign, NoSampledStopOfTheSlowerMotionContradictsATimeScaling) {
   EXPECT_GT(samples, 100u);
 }
 
-// CLEARANCE_STOPS_SHOW prints the figures of monitor/ask/STOPS.md.
+// CLEARANCE_STOPS_SHOW prints the figures of monitor/ask/PLANNED_STOPS.md.
 TEST(StoppableCampaign, BoundsAreBelowAllSampledStopsButNotFar) {
   Loose kept, left;
   for (std::uint64_t seed = first_seed(); seed < first_seed() + repeats(80); ++seed) {
