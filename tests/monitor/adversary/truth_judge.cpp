@@ -101,7 +101,7 @@ TruthJudge::TruthJudge(const Scene& scene, const TrueMotion& truth,
   for (const Fault& fault : faults) {
     if (fault.lie == Lie::kWrapped) continue;  // there is nothing to recover from
     ended_ = std::max(ended_, fault.to);
-    available_from_ = std::max(available_from_, fault.to + kRecovers);
+    available_from_ = std::max(available_from_, fault.to + recovers(fault));
   }
 }
 
@@ -109,6 +109,8 @@ void TruthJudge::change(const Scene& scene) {
   scene_ = &scene;
   const std::size_t pairs = scene.pairs.size();
   was_known_.assign(pairs, 0);
+  goes_on_.assign(pairs, 0);
+  frame_age_.assign(pairs, 0);
   used_.assign(pairs, 0.0);
   used_since_.assign(pairs, 0.0);
   certified_.assign(pairs, 0);
@@ -153,7 +155,7 @@ void TruthJudge::find_allowed(std::int64_t t) {
       if (t >= fault.from && t < fault.to + ends)
         of.error += admitted.slack * slack_of(fault.channel);
       of.is_excused |= t >= fault.from && t < fault.from + admitted.delay;
-      const std::int64_t delay = speed_delay(fault.channel);
+      const std::int64_t delay = speed_delay(fault);
       of.is_speed_excused |= t >= fault.from && t < fault.from + delay;
       of.is_speed_excused |= t >= fault.to && t < fault.to + delay;
     }
@@ -196,8 +198,17 @@ long double TruthJudge::distance(std::uint32_t pair, const Centres& centres) con
 
 long double TruthJudge::least_since(std::uint32_t pair) const {
   long double least = distance(pair, centres_[0]);
+  if (goes_on_[pair] == 0) return least;
   for (const Centres& centres : centres_) least = std::min(least, distance(pair, centres));
   return least;
+}
+
+std::int64_t TruthJudge::age_of_frame(const PairReport& pair) const {
+  const auto of = [&](std::uint32_t object, std::int64_t age) {
+    return scene_->objects[object].is_seen() ? age : 0;
+  };
+  return of(scene_->pairs[pair.pair].first, pair.age_a_ns) +
+         of(scene_->pairs[pair.pair].second, pair.age_b_ns);
 }
 
 void TruthJudge::judge_pair(const PairReport& pair) {
@@ -210,7 +221,9 @@ void TruthJudge::judge_pair(const PairReport& pair) {
     ++judged_[pair.pair];
     certified_[pair.pair] += pair.status <= PairStatus::kCarried;
   }
-  const bool was_known = std::exchange(was_known_[pair.pair], is_known);
+  const std::int64_t age = age_of_frame(pair),
+                     age_before = std::exchange(frame_age_[pair.pair], age);
+  goes_on_[pair.pair] = std::exchange(was_known_[pair.pair], is_known) && age >= age_before;
   if (!is_known || is_excused(pair.pair)) return;
   const auto truth = static_cast<double>(distance(pair.pair, centres_[0]));
   const double error = used_[pair.pair];
@@ -229,7 +242,7 @@ void TruthJudge::judge_pair(const PairReport& pair) {
   if (pair.upper < truth - nearer)
     note_false(Claim::kUpper, truth - nearer - pair.upper, said(since));
   const double error_since = used_since_[pair.pair] + kBend;
-  if (was_known && pair.swept_lower > since + error_since)
+  if (goes_on_[pair.pair] && pair.swept_lower > since + error_since)
     note_false(Claim::kSwept, pair.swept_lower - since - error_since, said(since));
 }
 
@@ -360,6 +373,7 @@ void TruthJudge::note_false(Claim claim, double by, const std::string& what) {
 
 Verdict TruthJudge::verdict() const {
   Verdict verdict = verdict_;
+  verdict.recovers = available_from_ - ended_;
   const bool is_late = t_ > available_from_ && std::ranges::any_of(known_since_, [](auto since) {
                          return since != kSettledOnce;
                        });
