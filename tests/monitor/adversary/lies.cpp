@@ -34,7 +34,9 @@ struct Span {
   double shortest, longest;  // ms
 };
 
-// A leap may not last until the object can have got there.
+// A leap may not last until the object can have got there, and half a speed not until positions
+// that are contradicted may be believed again: 3 (v/u + 1) age limits after it began at the
+// earliest, with the true speed u below the stated v, and 51 more.
 Span duration_of(const Fault& fault) {
   switch (fault.lie) {
     case Lie::kLeap:
@@ -42,6 +44,8 @@ Span duration_of(const Fault& fault) {
     case Lie::kScaled:
     case Lie::kParentFar:
       return {1.0, 600.0};
+    case Lie::kHalfSpeed:
+      return {200.0, 1e-6 * static_cast<double>((6 + 51) * age_limit(fault.channel))};
     case Lie::kRivalWhileRefused:
       return {1500.0, 1700.0};
     case Lie::kTakeover:

@@ -7,6 +7,8 @@
 // - Positions stop or slow down, and neither a velocity nor a frozen limit contradicts them. So do
 //   frames of tf, which have no velocities. The frozen limit of an object that follows a frame does
 //   not, either: its pose in the world changes with the frames above.
+// - Positions and velocities contradict each other, and then agree for 51 age limits: positions are
+//   believed where they are.
 // - A source falls silent, and another one claims what the object can have reached meanwhile.
 // - A source leaps, and stays there until the object can have got there.
 // - An object comes back from its absence in the middle of a lie, which is then the first that is
