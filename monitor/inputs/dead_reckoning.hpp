@@ -32,8 +32,8 @@ class Reckoning {
 
   // The integration time, in age limits. Over a longer time, noise would accumulate too much.
   static constexpr std::int64_t kAgeLimits = 50;
-  // The integration time while a value repeats, in age limits.
-  static constexpr std::int64_t kRepeatAgeLimits = 10;
+  // The time of the short integration, in age limits.
+  static constexpr std::int64_t kShortAgeLimits = 10;
   // Values are compared at most so often in an age limit. The steps between are summed up, and the
   // last comparison holds for them.
   static constexpr std::int64_t kComparesAnAgeLimit = 8;
@@ -49,19 +49,21 @@ class Reckoning {
                               const Metric& metric) noexcept {
     const std::int64_t age_ns = limits.age_limit_ns;
     if (!any_ || elapsed(last_ns_, stamp_ns) > kGapAgeLimits * age_ns) {
-      repeats_.any = false;
-      start(value, rate, stamp_ns, metric);
+      start_both(value, rate, stamp_ns, metric);
       return Agreement::kAgree;
     }
     const Step step = step_to(rate, stamp_ns, metric);
-    const bool stays = !same || stays_within_error(value, step, stamp_ns, limits, metric);
-    repeats_.any = same;
+    const Agreement of_short = compare_short(value, step, stamp_ns, same, limits, metric);
+    if (of_short == Agreement::kRatesContradict) {
+      start_both(value, rate, stamp_ns, metric);
+      return of_short;
+    }
     if (elapsed(since_ns_, stamp_ns) > kAgeLimits * age_ns) {
       start(value, rate, stamp_ns, metric);
     } else {
       integrate(step, rate, stamp_ns);
     }
-    if (!stays) return Agreement::kValuesContradict;
+    if (of_short != Agreement::kAgree) return of_short;
     if (elapsed(compared_ns_, stamp_ns) < age_ns / kComparesAnAgeLimit) return agreement_;
     compared_ns_ = stamp_ns;
     led_to_ = metric.moved(led_to_, std::exchange(to_add_, Rate{}));
@@ -74,7 +76,7 @@ class Reckoning {
   // without a change.
   [[nodiscard]] std::int64_t unchanged_until(const MotionLimits& limits) const noexcept {
     return std::min(less(since_ns_, -kAgeLimits * limits.age_limit_ns),
-                    less(repeats_.since_ns, -kRepeatAgeLimits * limits.age_limit_ns));
+                    less(short_.since_ns, -kShortAgeLimits * limits.age_limit_ns));
   }
   // Values like that were left out up to this stamp.
   void catch_up(std::int64_t stamp_ns) noexcept { last_ns_ = stamp_ns; }
@@ -90,46 +92,69 @@ class Reckoning {
     double length;  // of that path
     double speed;   // at its end
   };
-  // The integration since a value began to repeat. An input that freezes late in the long
-  // integration is detected as fast as one that freezes early.
-  struct Repeats {
-    bool any = false;  // the last sample repeated a value
-    Value led_to{};
+  // An integration over a short time, which begins anew when a value begins or ceases to repeat. An
+  // input that freezes late in the long integration, or whose rates become wrong there, is detected
+  // as fast as early in it. Rates are compared only if they may be wrong.
+  struct Short {
+    bool repeats = false;    // the last sample repeated a value
+    Value from{}, led_to{};  // where it began, and where the rates lead from there
     double path = 0.0;
     double fastest = 0.0;
     std::int64_t since_ns = 0;
   };
 
-  // Adds a sample that repeats the value of the last one. Returns false if the rates say that the
-  // input has moved since.
-  [[nodiscard]] bool stays_within_error(const Value& value, const Step& step, std::int64_t stamp_ns,
-                                        const MotionLimits& limits, const Metric& metric) noexcept {
-    if (!repeats_.any ||
-        elapsed(repeats_.since_ns, stamp_ns) > kRepeatAgeLimits * limits.age_limit_ns) {
-      repeats_ = {true, value, 0.0, last_speed_, last_ns_};
+  // A value that repeats contradicts rates that say that the input has moved since. One that has
+  // moved at least as far as they say, but to another place, shows that they are wrong.
+  [[nodiscard]] Agreement compare_short(const Value& value, const Step& step, std::int64_t stamp_ns,
+                                        bool same, const MotionLimits& limits,
+                                        const Metric& metric) noexcept {
+    if (!same && !Metric::kRatesMayBeWrong) {
+      short_.repeats = false;
+      return Agreement::kAgree;
     }
-    repeats_.fastest = std::max(repeats_.fastest, step.speed);
+    if (same != short_.repeats ||
+        elapsed(short_.since_ns, stamp_ns) > kShortAgeLimits * limits.age_limit_ns) {
+      short_ = {.repeats = same, .from = value, .led_to = value, .since_ns = stamp_ns};
+      short_.fastest = same ? last_speed_ : step.speed;
+      if (!same) return Agreement::kAgree;
+      short_.since_ns = last_ns_;  // it was there already
+    }
+    short_.fastest = std::max(short_.fastest, step.speed);
     if (step.length > 0.0) {
-      repeats_.led_to = metric.moved(repeats_.led_to, step.change);
-      repeats_.path += step.length;
+      short_.led_to = metric.moved(short_.led_to, step.change);
+      short_.path += step.length;
     }
-    if (repeats_.path == 0.0) return true;
-    return metric.stay_within(largest_error(repeats_.path, repeats_.fastest, limits),
-                              repeats_.led_to, value);
+    if (same) {
+      return short_.path == 0.0 ||
+                     metric.stay_within(largest_error(short_.path, short_.fastest, limits),
+                                        short_.led_to, value)
+                 ? Agreement::kAgree
+                 : Agreement::kValuesContradict;
+    }
+    if constexpr (Metric::kRatesMayBeWrong) {
+      const bool moves_less =
+          metric.distance(short_.from, value) < (1.0 - kRateError) * short_.path;
+      if (!moves_less && !metric.stay_within(least_error(short_.path, short_.fastest, limits),
+                                             short_.led_to, value)) {
+        return Agreement::kRatesContradict;
+      }
+    }
+    return Agreement::kAgree;
   }
 
   // Farther than this, a value contradicts the rates that were integrated along `path`. Rates that
   // are an age limit late do not contain the last part of the motion yet. Instead they contain what
   // preceded the first of them.
-  [[nodiscard]] double largest_error(double path, double fastest,
-                                     const MotionLimits& limits) const noexcept {
+  [[nodiscard]] static double largest_error(double path, double fastest,
+                                            const MotionLimits& limits) noexcept {
     return (std::max(limits.usual, fastest) + fastest) * seconds(limits.age_limit_ns) +
            kRateError * path;
   }
   // A value at most this far from where the rates lead does not show that the rates are too small.
-  [[nodiscard]] double least_error(const MotionLimits& limits) const noexcept {
-    return (kLeftOut * limits.usual + 2.0 * fastest_) * seconds(limits.age_limit_ns) +
-           kRateError * path_;
+  [[nodiscard]] static double least_error(double path, double fastest,
+                                          const MotionLimits& limits) noexcept {
+    return (kLeftOut * limits.usual + 2.0 * fastest) * seconds(limits.age_limit_ns) +
+           kRateError * path;
   }
 
   // A value that moves less than its rates say may be frozen. If it moves at least as far, but to
@@ -146,7 +171,7 @@ class Reckoning {
         step_ns_ = stamp_ns;
       }
       if (!moves_less) {
-        return metric.stay_within(least_error(limits), led_to_, value)
+        return metric.stay_within(least_error(path_, fastest_, limits), led_to_, value)
                    ? Agreement::kAgree
                    : Agreement::kRatesContradict;
       }
@@ -156,6 +181,11 @@ class Reckoning {
                : Agreement::kValuesContradict;
   }
 
+  void start_both(const Value& value, const Rate& rate, std::int64_t stamp_ns,
+                  const Metric& metric) noexcept {
+    start(value, rate, stamp_ns, metric);
+    short_ = {.from = value, .led_to = value, .fastest = last_speed_, .since_ns = stamp_ns};
+  }
   void start(const Value& value, const Rate& rate, std::int64_t stamp_ns,
              const Metric& metric) noexcept {
     any_ = true;
@@ -193,7 +223,7 @@ class Reckoning {
   double last_speed_ = 0.0;
   std::int64_t since_ns_ = 0, last_ns_ = 0, compared_ns_ = 0;
   Agreement agreement_ = Agreement::kAgree;  // of the last comparison
-  Repeats repeats_;
+  Short short_;
   // The length of the values' path, in steps of at least an age limit, so that noise does not add
   // up. The last step began at step_from_.
   double value_path_ = 0.0;

@@ -162,16 +162,19 @@ class Plausibility {
     if (sample.rate == nullptr) return std::nullopt;
     switch (reckoning_.add(sample.value, *sample.rate, sample.stamp_ns, same, limits, metric)) {
       case Agreement::kAgree:
-        rates_contradict_ = rates_contradict_ && !reckoning_.has_moved(limits);
+        if (reckoning_.has_moved(limits)) rates_contradict_ = rates_are_impossible_ = false;
         return std::nullopt;
       case Agreement::kRatesContradict:
+        if (!rates_are_impossible_ && values_contradict_until_ns_ >= sample.stamp_ns) break;
         rates_contradict_ = true;
         return std::nullopt;
       case Agreement::kValuesContradict:
-        if (rates_contradict_) return std::nullopt;
+        if (rates_are_impossible_) return std::nullopt;
         break;
     }
+    rates_contradict_ = false;
     value_contradicts_rates_ = true;
+    values_contradict_until_ns_ = less(sample.stamp_ns, -agree_for_ns(limits));
     return same ? Reject::kFrozen : Reject::kOtherWay;
   }
 
@@ -213,7 +216,7 @@ class Plausibility {
   // with rates that have moved. Until then no value is refused because of the rates.
   [[nodiscard]] bool rates_contradict() const noexcept { return rates_contradict_; }
   // Call this for a rate that the input cannot have.
-  void distrust_rates() noexcept { rates_contradict_ = true; }
+  void distrust_rates() noexcept { rates_contradict_ = rates_are_impossible_ = true; }
 
  private:
   // True if the input can have come to this value, or if values have stayed there for so long that
@@ -235,6 +238,9 @@ class Plausibility {
   OtherPlace<Metric> other_place_;
   bool value_contradicts_rates_ = false;  // the sample checked last
   bool rates_contradict_ = false;
+  bool rates_are_impossible_ = false;  // one was: whatever else they say, the values are right
+  // Stamp until which the values have to agree with the rates.
+  std::int64_t values_contradict_until_ns_ = std::numeric_limits<std::int64_t>::min();
 };
 
 // Two sources claim one input. Returns true if their values exclude each other. This is so if the

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 
 namespace clearance::test::lies {
 namespace {
@@ -33,7 +34,9 @@ struct Span {
   double shortest, longest;  // ms
 };
 
-// A leap may not last until the object can have got there.
+// A leap may not last until the object can have got there, and half a speed not until positions
+// that are contradicted may be believed again: 3 (v/u + 1) age limits after it began at the
+// earliest, with the true speed u below the stated v, and 51 more.
 Span duration_of(const Fault& fault) {
   switch (fault.lie) {
     case Lie::kLeap:
@@ -41,6 +44,8 @@ Span duration_of(const Fault& fault) {
     case Lie::kScaled:
     case Lie::kParentFar:
       return {1.0, 600.0};
+    case Lie::kHalfSpeed:
+      return {200.0, 1e-6 * static_cast<double>((6 + 51) * age_limit(fault.channel))};
     case Lie::kRivalWhileRefused:
       return {1500.0, 1700.0};
     case Lie::kTakeover:
@@ -120,13 +125,14 @@ bool is_told_of_seen(const Fault& fault, std::int64_t t, Told& told) {
   return std::ranges::count(kAll, fault.lie) != 0;
 }
 
-// Whoever takes over a ball that comes back from its absence cannot be contradicted.
+// The ball that commands take away comes back, from the end of their fault until they have to be in
+// force, in the middle of a lie: what is heard then is the first that is heard of it.
 bool is_unheard(const std::vector<Fault>& mix) {
-  const auto is = [](Lie lie, Channel channel) {
-    return [=](const Fault& fault) { return fault.lie == lie && fault.channel == channel; };
-  };
-  return std::ranges::any_of(mix, is(Lie::kAbsent, Channel::kCommands)) &&
-         std::ranges::any_of(mix, is(Lie::kTakeover, Channel::kBall2));
+  const auto returns = std::ranges::find(mix, Lie::kAbsent, &Fault::lie);
+  return returns != mix.end() && std::ranges::any_of(mix, [&](const Fault& fault) {
+           return fault.channel == Channel::kBall2 && fault.to > returns->to &&
+                  fault.from <= returns->to + kCommandTakes;
+         });
 }
 
 }  // namespace
@@ -217,7 +223,10 @@ std::vector<Fault> drawn_mix(std::uint64_t seed) {
   return mix;
 }
 
-std::int64_t speed_delay(Channel channel) { return 16 * age_limit(channel); }
+std::int64_t speed_delay(const Fault& fault) {
+  const std::int64_t delay = 16 * age_limit(fault.channel);
+  return fault.lie == Lie::kHalfSpeed ? std::max(delay, fault.to - fault.from) : delay;
+}
 
 Admissible admissible(const Fault& fault) {
   switch (fault.lie) {
@@ -253,6 +262,13 @@ Admissible admissible(const Fault& fault) {
     default:
       return {};
   }
+}
+
+std::int64_t recovers(const Fault& fault) {
+  constexpr std::int64_t kUsual = 2 * kSecond;
+  if (fault.lie != Lie::kRivalFirst || !is_ball(fault.channel)) return kUsual;
+  const double farthest = fault.size + 2.0 * TrueMotion::kBallReach;
+  return std::max<std::int64_t>(kUsual, kAgeLimit + std::llround(1e9 * farthest / kBallSpeed));
 }
 
 Told told(const Fault& fault, std::int64_t t) {

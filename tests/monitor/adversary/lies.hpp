@@ -7,9 +7,12 @@
 // - Positions stop or slow down, and neither a velocity nor a frozen limit contradicts them. So do
 //   frames of tf, which have no velocities. The frozen limit of an object that follows a frame does
 //   not, either: its pose in the world changes with the frames above.
+// - Positions and velocities contradict each other, and then agree for 51 age limits: positions are
+//   believed where they are.
 // - A source falls silent, and another one claims what the object can have reached meanwhile.
 // - A source leaps, and stays there until the object can have got there.
-// - An object comes back from its absence, and the source that is heard first claims any place.
+// - An object comes back from its absence in the middle of a lie, which is then the first that is
+//   heard of it.
 // - A value is wrong by less than the object moves within its age limit. The cell accepts that as
 //   an error of timing.
 // - The points of a camera are false and move as points may. A program that publishes them first,
@@ -94,12 +97,27 @@ struct Admissible {
 [[nodiscard]] Admissible admissible(const Fault& fault);
 // A value within the slack may be in use at the end of a lie. The next true one replaces it.
 inline constexpr std::int64_t kSlackEnds = 100 * kMs;
+// Until it is in force, a command changes nothing, and the successor may wait so many ticks until
+// all its pairs are certified (Successor::kMostUncertified).
+inline constexpr std::int64_t kCommandTakes = 300 * kMs;
 // The owner of a RivalFirst begins then; before, only the lie is heard.
 inline constexpr std::int64_t kOwnerStarts = 300 * kMs;
-// Velocities are compared with positions over some age limits: 3 (v/u + 1) for a speed that is
-// wrong by a half, where u is the true speed and v the stated one, and twice that if the
-// comparison has just begun.
-[[nodiscard]] std::int64_t speed_delay(Channel channel);
+// The time from the beginning and from the end of a lie during which speeds may be false.
+// Velocities are compared with positions over 10 age limits, and then anew. With the speed u and
+// the stated speed v, a wrong sign shows after (v/8u + 2) / (2 - 1/6) age limits, and after 5/6
+// more where the path before was true: 3 at most from u = v/14 on. The comparison may end before,
+// and the joint turn back in the middle of the next one, which then shows nothing: 3 + 10 + 3.
+// Zeros show sooner: (v/8u + 2 + 10/6), or v/8u in a comparison that begins with them. At half the
+// speed, positions that lag behind a joint that turned back move against its velocities. That
+// cannot be told from a wrong sign: their differences count as the speed while the lie lasts.
+[[nodiscard]] std::int64_t speed_delay(const Fault& fault);
+
+// Pairs have to be certified again this long after the end of a lie. A hold after a contradiction
+// of velocities takes 51 age limits, which is a second, and a source that was there first is given
+// up after one. A ball is then unknown until it can have got, at the stated speed, from the rival's
+// last pose to that of its owner, and for an age limit more. The two poses are apart by the rival's
+// offset and the true motion meanwhile, which is at most twice kBallReach.
+[[nodiscard]] std::int64_t recovers(const Fault& fault);
 
 // The changes that the owner of a channel makes to the truth at an instant.
 struct Told {

@@ -27,7 +27,7 @@ std::uint64_t first_seed() { return stated("CLEARANCE_LYING_FIRST", 1); }
 Verdict expect_truth(const Cell& cell, const LyingRun& run) {
   const Verdict verdict = judged(cell, run);
   EXPECT_TRUE(verdict.is_true() && verdict.least_certified >= kAvailable &&
-              verdict.recovered <= TruthJudge::kRecovers)
+              verdict.recovered <= verdict.recovers)
       << explained(cell, run, verdict);
   return verdict;
 }
@@ -65,9 +65,7 @@ std::vector<Channel> struck_by(Lie lie) {
 }
 
 // Until all pairs have to be certified again, and a little longer.
-std::int64_t long_enough(const Fault& fault) {
-  return fault.to + TruthJudge::kRecovers + kSecond / 4;
-}
+std::int64_t long_enough(const Fault& fault) { return fault.to + recovers(fault) + kSecond / 4; }
 
 TEST_P(LyingInputs, OfOneKindGiveNoFalseBoundAndMissNoZone) {
   const Cell cell = lying_cell();

@@ -50,6 +50,10 @@ class TrueMotion {
   // No centre of the body is faster, m/s; what is seen: beside the stated speed of its sensor.
   [[nodiscard]] static double fastest(std::size_t body);
 
+  // No point of a ball is farther from the middle of its orbit: the largest radius of an orbit, and
+  // the place of the sphere in the ball's frame with its radius, m.
+  static constexpr double kBallReach = 1.1 + 0.15 + 0.1;
+
  private:
   struct Orbit {
     TruePoint centre;

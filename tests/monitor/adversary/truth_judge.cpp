@@ -101,7 +101,7 @@ TruthJudge::TruthJudge(const Scene& scene, const TrueMotion& truth,
   for (const Fault& fault : faults) {
     if (fault.lie == Lie::kWrapped) continue;  // there is nothing to recover from
     ended_ = std::max(ended_, fault.to);
-    available_from_ = std::max(available_from_, fault.to + kRecovers);
+    available_from_ = std::max(available_from_, fault.to + recovers(fault));
   }
 }
 
@@ -109,6 +109,8 @@ void TruthJudge::change(const Scene& scene) {
   scene_ = &scene;
   const std::size_t pairs = scene.pairs.size();
   was_known_.assign(pairs, 0);
+  goes_on_.assign(pairs, 0);
+  frame_age_.assign(pairs, 0);
   used_.assign(pairs, 0.0);
   used_since_.assign(pairs, 0.0);
   certified_.assign(pairs, 0);
@@ -154,7 +156,7 @@ void TruthJudge::find_allowed(std::int64_t t) {
       if (t >= fault.from && t < fault.to + ends)
         of.error += admitted.slack * slack_of(fault.channel);
       of.is_excused |= t >= fault.from && t < fault.from + admitted.delay;
-      const std::int64_t delay = speed_delay(fault.channel);
+      const std::int64_t delay = speed_delay(fault);
       of.is_speed_excused |= t >= fault.from && t < fault.from + delay;
       of.is_speed_excused |= t >= fault.to && t < fault.to + delay;
     }
@@ -197,8 +199,17 @@ long double TruthJudge::distance(std::uint32_t pair, const Centres& centres) con
 
 long double TruthJudge::least_since(std::uint32_t pair) const {
   long double least = distance(pair, centres_[0]);
+  if (goes_on_[pair] == 0) return least;
   for (const Centres& centres : centres_) least = std::min(least, distance(pair, centres));
   return least;
+}
+
+std::int64_t TruthJudge::age_of_frame(const PairReport& pair) const {
+  const auto of = [&](std::uint32_t object, std::int64_t age) {
+    return scene_->objects[object].is_seen() ? age : 0;
+  };
+  return of(scene_->pairs[pair.pair].first, pair.age_a_ns) +
+         of(scene_->pairs[pair.pair].second, pair.age_b_ns);
 }
 
 void TruthJudge::judge_pair(const PairReport& pair) {
@@ -211,7 +222,9 @@ void TruthJudge::judge_pair(const PairReport& pair) {
     ++judged_[pair.pair];
     certified_[pair.pair] += pair.status <= PairStatus::kCarried;
   }
-  const bool was_known = std::exchange(was_known_[pair.pair], is_known);
+  const std::int64_t age = age_of_frame(pair),
+                     age_before = std::exchange(frame_age_[pair.pair], age);
+  goes_on_[pair.pair] = std::exchange(was_known_[pair.pair], is_known) && age >= age_before;
   if (!is_known || is_excused(pair.pair)) return;
   const auto truth = static_cast<double>(distance(pair.pair, centres_[0]));
   const double error = used_[pair.pair];
@@ -229,16 +242,8 @@ void TruthJudge::judge_pair(const PairReport& pair) {
   const double nearer = error + reach_of(body_[of.first]) + reach_of(body_[of.second]);
   if (pair.upper < truth - nearer)
     note_false(Claim::kUpper, truth - nearer - pair.upper, said(since));
-  double error_since = used_since_[pair.pair] + kBend;
-  // A new picture says nothing about the time before it: its pairs are swept from there on.
-  const std::array bodies{body_[of.first], body_[of.second]};
-  if (std::ranges::count(bodies, kEyeBody) != 0) {
-    for (const std::size_t body : bodies) {
-      error_since += TrueMotion::fastest(body) * 1e-9 *
-                     static_cast<double>(std::max<std::int64_t>(tick_ - kMs, 0));
-    }
-  }
-  if (was_known && pair.swept_lower > since + error_since)
+  const double error_since = used_since_[pair.pair] + kBend;
+  if (goes_on_[pair.pair] && pair.swept_lower > since + error_since)
     note_false(Claim::kSwept, pair.swept_lower - since - error_since, said(since));
 }
 
@@ -369,6 +374,7 @@ void TruthJudge::note_false(Claim claim, double by, const std::string& what) {
 
 Verdict TruthJudge::verdict() const {
   Verdict verdict = verdict_;
+  verdict.recovers = available_from_ - ended_;
   const bool is_late = t_ > available_from_ && std::ranges::any_of(known_since_, [](auto since) {
                          return since != kSettledOnce;
                        });

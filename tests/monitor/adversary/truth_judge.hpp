@@ -48,6 +48,7 @@ struct Verdict {
   std::string least_pair;
   // The longest time from the last fault's end until a pair is certified for kSettled, ns.
   std::int64_t recovered = 0;
+  std::int64_t recovers = 0;                        // the longest that it may be
   std::uint64_t asked = 0, answered = 0, free = 0;  // questions
   std::string refusal;                              // of the last one that has no answer
 
@@ -57,14 +58,7 @@ struct Verdict {
 
 class TruthJudge {
  public:
-  // Pairs have to be certified again this long after the last fault has ended. A hold after a
-  // contradiction of velocities takes 51 age limits, which is a second, and a source that was there
-  // first is given up after one.
-  static constexpr std::int64_t kRecovers = 2 * kSecond;
   static constexpr std::int64_t kSettled = 100 * kMs;
-  // Until it is in force, a command changes nothing, and the successor may wait so many ticks until
-  // all its pairs are certified (Successor::kMostUncertified).
-  static constexpr std::int64_t kCommandTakes = 300 * kMs;
   // The time from the start after which a cell without faults has heard everything.
   static constexpr std::int64_t kStarts = kSecond / 2;
 
@@ -101,7 +95,9 @@ class TruthJudge {
   [[nodiscard]] double allowed(std::uint32_t pair, std::int64_t age_a, std::int64_t age_b) const;
   [[nodiscard]] bool is_excused(std::uint32_t pair) const;
   [[nodiscard]] long double distance(std::uint32_t pair, const Centres& centres) const;
+  // The least distance since the last tick, or now, if the pair does not go on from there.
   [[nodiscard]] long double least_since(std::uint32_t pair) const;
+  [[nodiscard]] std::int64_t age_of_frame(const PairReport& pair) const;
   void judge_pair(const PairReport& pair);
   void judge_minimum(const Report& report);
   void judge_zone(const Report& report, std::size_t zone);
@@ -122,7 +118,10 @@ class TruthJudge {
   // The bodies in this tick, in the middle of the time since the last one, and in the last one.
   std::array<Centres, 3> centres_{};
   std::array<Allowed, kBodies> allowed_{};
-  std::vector<std::uint8_t> was_known_;  // by pair
+  // By pair: it was known in the last tick; and no frame has come since, which replaces what was
+  // known. Only then does a swept bound begin at the last tick (monitor/schedule/SWEPT.md).
+  std::vector<std::uint8_t> was_known_, goes_on_;
+  std::vector<std::int64_t> frame_age_;  // by pair, ns; 0: of no sensor
   // By pair: what is allowed at its ages, m, in this tick; and in the last one, if that is more.
   std::vector<double> used_, used_since_;
   std::vector<std::uint64_t> certified_, judged_;  // ticks by pair

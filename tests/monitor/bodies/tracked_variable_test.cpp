@@ -258,6 +258,37 @@ TEST_F(LyingVariable, VelocitiesOfTheWrongSignGiveWayToPositions) {
   }
 }
 
+// Comparisons begin anew now and then, so the last one began at any time before.
+TEST_F(LyingVariable, VelocitiesThatBecomeWrongAfterALongMotionAreFoundAsSoon) {
+  for (const double factor : {0.0, -1.0, -0.5}) {
+    for (int moves = 1; moves < 1500; moves += 13) {
+      state_ = {};
+      for (int ms = 0; ms < moves || !state_.velocities_contradict; ++ms) {
+        ASSERT_LT(ms, moves + 85) << factor;
+        const double sent = ms < moves ? 1.0 : factor;
+        ASSERT_EQ(take_both(ms * kVariableMs, 1e-3 * ms - 0.8, sent), std::nullopt) << ms;
+      }
+    }
+  }
+}
+
+// At half the speed, positions move against velocities where the joint has turned back meanwhile.
+TEST_F(LyingVariable, PositionsThatLagBehindAJointThatTurnsBackAreNotBelievedAgain) {
+  joint_.max_speed = 1.5;
+  const double most = 10.5 * joint_.max_speed * 1e-9 * static_cast<double>(joint_.age_limit_ns);
+  const auto angle = [](double ms) { return 1.3e-3 * ms; };
+  for (int from = 1000; from < 6000; from += 100) {
+    state_ = {};
+    for (int ms = 0; ms < from + 2000; ++ms) {
+      const double told = ms < from ? ms : 0.5 * (from + ms);
+      const double velocity = 0.9 * 1.3 * std::cos(angle(ms));
+      static_cast<void>(take_both(ms * kVariableMs, 0.9 * std::sin(angle(told)), velocity));
+      const double error = std::abs(state_.position - 0.9 * std::sin(angle(ms)));
+      ASSERT_LT(state_.input.late ? 0.0 : error, most) << "from " << from << " at " << ms;
+    }
+  }
+}
+
 // Several messages place a base on tf together: its positions come in steps of other sizes than
 // their times, and its velocities are differences of each message's own.
 TEST_F(LyingVariable, VelocitiesThatAreDifferencesThemselvesAreNotContradicted) {
