@@ -166,7 +166,7 @@ clearance_msg_RobotStop joined_stop(const ShareMap& map, std::span<const ShareVi
     has_any = true;
   }
   if (is_known && has_any) return joined;
-  return {.robot = robot, .clearance = -kNone, .time = std::numeric_limits<double>::quiet_NaN()};
+  return {robot, 0, 0.0, -kNone, 0, 0.0, std::numeric_limits<double>::quiet_NaN()};
 }
 
 }  // namespace
