@@ -120,6 +120,15 @@ double StoppingJoints::covered(const Joint& joint) const noexcept {
   return rounded_up(faster * reaction() + braking);
 }
 
+double StoppingJoints::standstill(std::uint32_t variable) const noexcept {
+  const Joint& joint = *find(variable);
+  const double braking =
+      stops_.keeps_path ? joint.speed * in_proportion(1.0) : joint.stop->distance(joint.speed);
+  double at = joint.position + std::copysign(joint.speed * reaction() + braking, joint.velocity);
+  joint.hold_within_limits(at);
+  return at;
+}
+
 void StoppingJoints::state(StatedJoint& out, std::uint32_t variable) const noexcept {
   const Joint& joint = *find(variable);
   const double covered = this->covered(joint);

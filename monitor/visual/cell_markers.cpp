@@ -92,6 +92,9 @@ Sample<ros::TransformMessage> transforms_message(const Scene& scene, const Objec
     const Pose* const pose = poses.pose(i);
     if (pose != nullptr) transforms.push_back({scene.objects[i].name, *pose});
   }
+  for (const PathFrame::Placed& link : poses.at_standstill())
+    transforms.push_back(
+        {kStandstillFrames + scene.objects[link.object].name, link.world_from_object});
   return ros::transform_message(stamp_ns, transforms);
 }
 

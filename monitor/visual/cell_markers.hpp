@@ -17,7 +17,11 @@ inline constexpr const char* kTransformsTopic = "/tf";
 inline constexpr const char* kBodiesTopic = "/clearance/bodies";
 inline constexpr const char* kClosestTopic = "/clearance/closest";
 
-// Contains every object with a known pose, as a frame under the object's name.
+// Before the names of links in frames of where a robot comes to stand.
+inline constexpr const char* kStandstillFrames = "standstill/";
+
+// Contains every object with a known pose, as a frame under the object's name, and the links of
+// ObjectPoses::at_standstill().
 [[nodiscard]] Sample<ros::TransformMessage> transforms_message(const Scene& scene,
                                                                const ObjectPoses& poses,
                                                                std::int64_t stamp_ns);

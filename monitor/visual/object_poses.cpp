@@ -5,6 +5,7 @@
 #include <span>
 #include <utility>
 
+#include "monitor/ask/stopping_joints.hpp"
 #include "monitor/bodies/bounding_sphere.hpp"
 #include "monitor/bodies/posed_part.hpp"
 
@@ -52,6 +53,41 @@ bool ObjectPoses::is_on_time(std::size_t object) const {
   if (state.follows_joints) return !state.joints_late && !state.joints_contradicted;
   return !state.input.contradiction.holds(inputs_->time.now_ns) &&
          age_ns(object) <= scene_.objects[object].age_limit_ns;
+}
+
+std::vector<PathFrame> ObjectPoses::along(const Question& question, std::size_t count,
+                                          std::span<const double> more) const {
+  std::vector<double> positions(scene_.variables.size());
+  for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = position(i);
+  std::vector<Pose> carriers(scene_.robots.size());
+  for (std::size_t r = 0; r < carriers.size(); ++r) {
+    const RobotBase& base = scene_.robots[r].base;
+    const Pose* at = base.kind == RobotBase::Kind::kObject ? pose(base.object) : nullptr;
+    if (at != nullptr) carriers[r] = *at;
+  }
+  return path_frames(scene_, question, positions, carriers, count, more);
+}
+
+// A motion of one waypoint is a posture.
+std::vector<PathFrame::Placed> ObjectPoses::at_standstill() const {
+  Question question;
+  JointTrajectory& posture = question.motion;
+  posture.times = {0.0};
+  for (std::uint32_t r = 0; r < scene_.robots.size(); ++r) {
+    if (!scene_.robots[r].stopping.is_stated()) continue;
+    JointTrajectory motion;
+    StoppingJoints joints(scene_, r, motion);
+    joints.read(*inputs_);
+    if (!joints.is_usable() || joints.is_assumed()) continue;
+    for (std::uint32_t v = 0; v < scene_.variables.size(); ++v) {
+      if (!joints.has(v)) continue;
+      posture.joints.push_back(scene_.variables[v].name);
+      posture.positions.push_back(joints.standstill(v));
+    }
+  }
+  if (posture.joints.empty()) return {};
+  std::vector<PathFrame> frames = along(question, 1);
+  return frames.empty() ? std::vector<PathFrame::Placed>() : std::move(frames.front().links);
 }
 
 void ObjectPoses::take(PoseBatch batch, Numbers numbers) {

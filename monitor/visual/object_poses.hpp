@@ -14,11 +14,13 @@
 #include <limits>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
 #include "clearance.h"
 #include "config/scene/scene.hpp"
+#include "monitor/ask/path_frames.hpp"
 #include "monitor/bodies/ingest.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/inputs/source_numbers.hpp"
@@ -44,6 +46,13 @@ class ObjectPoses {
     const TrackedVariable& state = inputs_->robots.variables()[variable];
     return state.input.has_value ? state.position : std::numeric_limits<double>::quiet_NaN();
   }
+  // The links along a motion that begins at the latest report (path_frames).
+  [[nodiscard]] std::vector<PathFrame> along(const Question& question, std::size_t count,
+                                             std::span<const double> more = {}) const;
+  // The links of robots that state how they stop, and what stands on them, where they come to
+  // stand if all of them are told to stop at the latest report. A robot whose joints are not all
+  // on time with a velocity is left out.
+  [[nodiscard]] std::vector<PathFrame::Placed> at_standstill() const;
   // World from object; null before the first pose.
   [[nodiscard]] const Pose* pose(std::size_t object) const {
     const TrackedObject& state = inputs_->objects[object];

@@ -24,7 +24,7 @@ inline constexpr std::string_view kSchemaEncoding = "ros2msg";
 
 // The pose of the frame `child` in the frame `world`.
 struct Transform {
-  std::string_view child;
+  std::string child;
   Pose pose;
 };
 inline constexpr std::string_view kWorldFrame = "world";

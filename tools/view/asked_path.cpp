@@ -4,7 +4,6 @@
 #include <cmath>
 #include <vector>
 
-#include "monitor/ask/path_frames.hpp"
 #include "tools/view/json_number.hpp"
 
 namespace clearance::view {
@@ -46,22 +45,13 @@ bool AskedPath::draw(const ObjectPoses& poses) {
            {"status", name_of(result.status)},  {"reason", result.reason},
            {"lower", number(result.lower)},     {"upper", number(result.upper)},
            {"frames", nlohmann::json::array()}, {"violation", nullptr}};
-  std::vector<double> positions(scene_.variables.size());
-  for (std::size_t i = 0; i < positions.size(); ++i) positions[i] = poses.position(i);
-  std::vector<Pose> carriers(scene_.robots.size());
-  for (std::size_t r = 0; r < carriers.size(); ++r) {
-    const RobotBase& base = scene_.robots[r].base;
-    const Pose* pose = base.kind == RobotBase::Kind::kObject ? poses.pose(base.object) : nullptr;
-    if (pose != nullptr) carriers[r] = *pose;
-  }
   std::vector<double> more;
   const MarginResult* const violation = first_violation(result);
   if (violation != nullptr) {
     more.push_back(violation->verdict == Verdict::kBelow ? violation->below_at
                                                          : violation->above_until);
   }
-  for (const PathFrame& frame :
-       path_frames(scene_, asked_->question, positions, carriers, kFrames, more)) {
+  for (const PathFrame& frame : poses.along(asked_->question, kFrames, more)) {
     nlohmann::json links = nlohmann::json::array();
     for (const PathFrame::Placed& link : frame.links) {
       const Vec3& p = link.world_from_object.position;

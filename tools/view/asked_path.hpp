@@ -12,9 +12,6 @@ namespace clearance::view {
 
 class AskedPath {
  public:
-  // The scene must outlive this.
-  explicit AskedPath(const Scene& scene) : scene_(scene) {}
-
   // A question and its answer come in either order. Each returns true if the last question is now
   // answered. The joints that the question does not state are then where `poses` has them.
   bool take(const MotionQuestion& question, const ObjectPoses& poses);
@@ -28,7 +25,6 @@ class AskedPath {
  private:
   bool draw(const ObjectPoses& poses);
 
-  const Scene& scene_;
   std::optional<MotionQuestion> asked_;   // the last one
   std::optional<QuestionResult> result_;  // the last one
   nlohmann::json json_;

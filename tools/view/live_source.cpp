@@ -49,7 +49,6 @@ LiveSource::LiveSource(std::shared_ptr<const Cell> cell, const DdsOptions& dds)
       frame_(make_frame()),
       questions_(participant_.reader(TopicKind::kQuestions, topics_.questions, kQuestionsKept)),
       answers_(participant_.reader(TopicKind::kAnswers, topics_.answers, kQuestionsKept)),
-      asked_(std::make_unique<AskedPath>(cell_->scene)),
       intake_(*cell_, {.use_sensor = [this](const RawSensorMessage& message) { hear(message); }},
               [this](PoseBatch& batch) {
                 frame_->take_from_ros(std::move(batch));
@@ -206,14 +205,13 @@ void LiveSource::take_questions(Server& server) {
     if (!decoder_.decode(sample.bytes(), message, CdrBytes::kOfReader)) continue;
     const auto read = from_wire(*message);
     const auto* question = std::get_if<MotionQuestion>(&read);
-    if (question != nullptr && asked_->take(*question, frame_->poses()))
-      server.parameters_changed();
+    if (question != nullptr && asked_.take(*question, frame_->poses())) server.parameters_changed();
   }
   take_cdr(answers_, taken_);
   for (const CdrSample& sample : std::exchange(taken_, {})) {
     Sample<clearance_msg_Answer> message;
     if (!decoder_.decode(sample.bytes(), message, CdrBytes::kOfReader)) continue;
-    if (asked_->take(from_wire(*message), frame_->poses())) server.parameters_changed();
+    if (asked_.take(from_wire(*message), frame_->poses())) server.parameters_changed();
   }
 }
 
@@ -244,14 +242,14 @@ void LiveSource::follow_the_catalogue(Server& server) {
   }
   server.forget(kSeen);
   frame_ = make_frame();
-  asked_ = std::make_unique<AskedPath>(cell_->scene);
+  asked_ = {};
   intake_.change(*cell_);
   server.parameters_changed();
 }
 
 nlohmann::json LiveSource::parameters() const {
   return {{{"name", "scene.attached"}, {"value", attached_json(attached_)}},
-          {{"name", "asked.motion"}, {"value", asked_->json()}}};
+          {{"name", "asked.motion"}, {"value", asked_.json()}}};
 }
 
 // The frame of a changed cell does not get the catalogue again.

@@ -65,7 +65,7 @@ class LiveSource final : public Source {
   bool is_seen_wanted_ = false;       // by a viewer
   std::unique_ptr<Frame> frame_;
   dds_entity_t questions_, answers_;  // readers
-  std::unique_ptr<AskedPath> asked_;  // of the frame's scene
+  AskedPath asked_;                   // of the frame's scene
   CdrDecoder decoder_;
   Intake intake_;                    // of ROS 2's topics
   std::future<CellResult> reading_;  // not valid: no cell is being read

@@ -216,6 +216,24 @@ json zones_json(const Scene& scene, Meshes& meshes) {
   return list;
 }
 
+// What stops with a robot that states how it stops: its links, and those of robots that stand on it
+// and state nothing.
+json robots_json(const Scene& scene) {
+  json list = json::array();
+  for (const Robot& robot : scene.robots)
+    list.push_back({{"name", robot.name}, {"stopping", json::array()}});
+  for (std::uint32_t r = 0; r < scene.robots.size(); ++r) {
+    std::uint32_t by = r;
+    const auto is_stated = [&] { return scene.robots[by].stopping.is_stated(); };
+    while (!is_stated() && scene.robots[by].base.kind == RobotBase::Kind::kLink)
+      by = scene.robots[by].base.robot;
+    if (!is_stated()) continue;
+    for (const RobotLink& link : scene.robots[r].links)
+      if (link.object != RobotLink::kNoObject) list[by]["stopping"].push_back(link.object);
+  }
+  return list;
+}
+
 json contacts_json(const Scene& scene) {
   json list = json::array();
   for (const AllowedContact& contact : scene.contacts) {
@@ -258,9 +276,8 @@ std::string scene_json(const Cell& cell, const std::map<std::size_t, Vec3>& colo
               {"blind_shells", blind_shells_json(scene, meshes)},
               {"zones", zones_json(scene, meshes)},
               {"contacts", contacts_json(scene)},
-              {"robots", json::array()},
+              {"robots", robots_json(scene)},
               {"zone_causes", json::object()}};
-  for (const Robot& robot : scene.robots) all["robots"].push_back(robot.name);
   for (const PlacedBy by : {PlacedBy::kPoses, PlacedBy::kJointStates, PlacedBy::kFrames})
     all["zone_causes"][key(by)] = causes_json(by);
   all["meshes"] = meshes.take();

@@ -13,10 +13,11 @@ export const asked = {
   seen: text.get("seen"),
   hidden: text.get("hide")?.split(",").filter(Boolean) ?? [],
   shells: text.get("zones") !== "off",
+  stops: text.get("stops") !== "off",
 };
 
 // The address that shows the same view again; the objects of a pair are joined by "~".
-export function addressOf({ time, pairs, filter, sort, camera, theme, shells, hidden, robots, seen }) {
+export function addressOf({ time, pairs, filter, sort, camera, theme, shells, stops, hidden, robots, seen }) {
   const all = new URLSearchParams();
   if (time !== undefined) all.set("t", time.toFixed(6));
   if (pairs.length) all.set("pairs", pairs.join(","));
@@ -26,6 +27,7 @@ export function addressOf({ time, pairs, filter, sort, camera, theme, shells, hi
   if (camera) all.set("camera", camera);
   if (theme) all.set("theme", theme);
   if (!shells) all.set("zones", "off");
+  if (!stops) all.set("stops", "off");
   if (robots !== "bodies") all.set("robots", robots);
   if (seen !== "all") all.set("seen", seen);
   return `${location.origin}${location.pathname}?${all}`;

@@ -17,6 +17,7 @@ export class CellState {
     this.statuses = new Map();
     this.connected = false;
     this.timeNs = 0;
+    this.limiting = new Set(); // pairs from which a robot would not stop clear
     this.history = timeline ? new RecordedHistory(timeline) : new LiveHistory((id) => this.pairs[id].name);
     this.measuredId = scene.pairs.length; // of the pair that a person measures
     this.pairs = scene.pairs.map(([a, b], id) => ({
@@ -34,6 +35,11 @@ export class CellState {
     for (const pair of report.pairs) if (!isKnown(pair)) this.noteLate(pair);
     if (this.measured) report.pairs.push(this.measured);
     this.history.take(report, this.minimum(), this.scaling, timeNs);
+  }
+
+  takeSeparation(separation) {
+    this.separation = separation;
+    this.limiting = new Set((separation.stops ?? []).filter(({ validity, scaling }) => validity > 0 && scaling < 1).map(({ pair }) => pair));
   }
 
   // The pair of these two objects if reports have it.
@@ -90,11 +96,11 @@ export class CellState {
     return report && report.minimum_known && isKnown(report.minimum) ? report.minimum : undefined;
   }
 
-  // "inside", "leaving" or "outside" its zones, "inside" too where bodies overlap without an allowed contact, "free" of any, "meant" as an allowed contact, or "lost".
+  // "inside", "leaving" or "outside" its zones, "inside" too where bodies overlap without an allowed contact or a robot would not stop clear, "free" of any, "meant" as an allowed contact, or "lost".
   levelOf(pair) {
     if (!isKnown(pair)) return "lost";
     if (this.meant.has(pair.pair)) return "meant";
-    if (pair.status === OVERLAPPING || pair.upper < 0) return "inside";
+    if (pair.status === OVERLAPPING || pair.upper < 0 || this.limiting.has(pair.pair)) return "inside";
     const { zones, margins } = this.pairs[pair.pair];
     const clearance = pair.lower - margins;
     if (zones.some(({ enter_below }) => clearance < enter_below)) return "inside";

@@ -18,6 +18,7 @@ const KEYS = [
   ["2", "from the front", (actions) => actions.look("front")],
   ["3", "from the side", (actions) => actions.look("side")],
   ["z", "zones as shells", (actions) => actions.shells()],
+  ["g", "ghosts of robots where they stand if they are told to stop now", (actions) => actions.stops()],
   ["b", "robots: the bodies that are compared, their looks, or both", (actions) => actions.visuals()],
   ["p", "what cameras see: points and blind shells, points, or nothing", (actions) => actions.seen()],
   ["o", "list of objects and groups, to hide them", (actions) => actions.objects()],

@@ -79,7 +79,7 @@ const connection = new Connection(`ws://${location.host}/`, [topics.distances, t
     else if (topic === "/clearance/seen") view.takeSeen(value, ns);
     else if (topic === topics.distances) state.takeReport(value, ns);
     else if (topic === topics.zones) state.zones.set(value.zone, value);
-    else if (topic === topics.separation) state.separation = value;
+    else if (topic === topics.separation) state.takeSeparation(value);
     else if (topic === topics.health) state.takeHealth(value, ns);
   },
 });
@@ -169,7 +169,7 @@ const pairName = (id) => `${scene.objects[state.pairs[id].a].name}~${scene.objec
 function address(withCamera) {
   return addressOf({
     time: secondsIn(), pairs: linked().map(pairName), hidden: hidden.names, filter: table.filter, sort: table.sorting, theme,
-    camera: withCamera ? view.place : asked.camera, shells: view.shells.visible, robots: view.visuals.mode, seen: view.seen.mode,
+    camera: withCamera ? view.place : asked.camera, shells: view.shells.visible, stops: view.stopGhosts.visible, robots: view.visuals.mode, seen: view.seen.mode,
   });
 }
 // The cell is another one: the page is loaded anew and looks from the same place. The server knows the time.
@@ -191,6 +191,7 @@ table.filter = asked.filter;
 if (asked.sort) table.sorting = asked.sort;
 view.bodies.choose([...chosen].flatMap((id) => [state.pairs[id].a, state.pairs[id].b]));
 view.shells.visible = asked.shells;
+view.stopGhosts.visible = asked.stops;
 hidden.names = asked.hidden;
 if (asked.camera) view.place = asked.camera;
 
@@ -228,6 +229,12 @@ const actions = {
   shells: () => {
     view.shells.visible = !view.shells.visible;
     element("shells").setAttribute("aria-pressed", view.shells.visible);
+    changed();
+  },
+  stops: () => {
+    view.stopGhosts.visible = !view.stopGhosts.visible;
+    ++view.changes;
+    element("stops").setAttribute("aria-pressed", view.stopGhosts.visible);
     changed();
   },
   visuals: () => showRobots(MODES[(MODES.indexOf(view.visuals.mode) + 1) % MODES.length]),
@@ -268,11 +275,13 @@ const actions = {
   },
   help: () => (element("keys").open ? element("keys").close() : element("keys").showModal()),
 };
-for (const id of ["fit", "shells", "visuals", "theme", "share", "picture", "help", "measure", "csv", "seen"]) element(id).onclick = actions[id];
+for (const id of ["fit", "shells", "visuals", "theme", "share", "picture", "help", "measure", "csv", "seen", "stops"]) element(id).onclick = actions[id];
 element("object-button").onclick = actions.objects;
 element("look").onclick = lookAtChosen;
 element("visuals").hidden = !scene.has_robots;
 element("seen").hidden = !scene.sensors.length;
+element("stops").hidden = !view.stopGhosts.children.length;
+element("stops").setAttribute("aria-pressed", view.stopGhosts.visible);
 element("shells").hidden = element("zones").hidden = !scene.zones.length;
 element("shells").setAttribute("aria-pressed", view.shells.visible);
 dark.addEventListener("change", () => {

@@ -51,13 +51,13 @@ export class PairLines extends THREE.Group {
     this.shown = [];
   }
 
-  // First the least pair, then the chosen ones, then those in zones by distance.
+  // First the least pair, then the chosen ones, then those that limit a robot's speed, then those in zones by distance.
   static which(state, chosen) {
     const minimum = state.minimum();
     const found = new Map(minimum ? [[minimum.pair, minimum]] : []);
     const pairs = state.report.pairs.filter(isKnown);
     for (const pair of pairs) if (chosen.has(pair.pair) && !found.has(pair.pair)) found.set(pair.pair, pair);
-    const near = pairs.filter((pair) => ["inside", "leaving"].includes(state.levelOf(pair))).sort((a, b) => a.lower - b.lower);
+    const near = pairs.filter((pair) => ["inside", "leaving"].includes(state.levelOf(pair))).sort((a, b) => state.limiting.has(b.pair) - state.limiting.has(a.pair) || a.lower - b.lower);
     for (const pair of near) if (found.size < MOST_LINES && !found.has(pair.pair)) found.set(pair.pair, pair);
     return [...found.values()].filter(({ witness_a: { x } }) => Number.isFinite(x));
   }

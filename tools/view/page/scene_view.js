@@ -6,6 +6,7 @@ import { Backdrop } from "./backdrop.js";
 import { Bodies } from "./bodies.js";
 import { PairLines } from "./pair_lines.js";
 import { Seen } from "./seen.js";
+import { StopGhosts } from "./stop_ghosts.js";
 import { Visuals } from "./visuals.js";
 import { ZoneShells } from "./zone_shells.js";
 import { css } from "./format.js";
@@ -57,8 +58,9 @@ export class SceneView {
     this.visuals = new Visuals(this.bodies);
     this.seen = new Seen(scene, this.bodies);
     this.askedPath = new AskedPath(this.bodies);
+    this.stopGhosts = new StopGhosts(scene, this.bodies);
     this.backdrop = new Backdrop(this.bodies.still, this.bodies.veil);
-    this.world.add(this.backdrop, this.bodies, this.visuals, this.shells, this.seen, this.askedPath, this.lines);
+    this.world.add(this.backdrop, this.bodies, this.visuals, this.shells, this.seen, this.askedPath, this.stopGhosts, this.lines);
     this.clicks(canvas);
     this.changes = 0;
     new ResizeObserver(() => this.resizeSoon()).observe(this.element);
@@ -181,6 +183,7 @@ export class SceneView {
   }
 
   moved(transforms) {
+    this.stopGhosts.move(transforms);
     if (!this.bodies.move(transforms) && this.fitted) return;
     if (this.follows) this.fit(this.follows.side, this.follows.moving);
     else this.surround();
@@ -204,6 +207,7 @@ export class SceneView {
     this.visuals.update();
     this.shells.update(this.bodies, state.zoneStates());
     this.seen.update(state.timeNs);
+    this.stopGhosts.update(state.separation?.stops);
     if (state.report) this.lines.update(state, chosen, this.camera, this.size, this.bodies);
     const still = [this.bodies.stillChanges, this.changes, this.cameraChanges].join();
     this.backdrop.update(this.renderer, this.camera, still, () => css("--scene"));

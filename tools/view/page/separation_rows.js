@@ -17,10 +17,11 @@ function figuresOf({ zone, pair, validity, remaining, speed_limit, scaling }, pa
   return [[mm(clearance, 0), mm(protective_distance, 0), mm(remaining, 0), scaling.toFixed(2), metresPerSecond(speed_limit)], scaling < 1 ? "alarm" : ""];
 }
 
-// The same of a robot that states how it stops: its clearance until it stands, and the scaling.
-function figuresOfStop({ validity, clearance, scaling }) {
+// The same of a robot that states how it stops: its limiting pair until it stands, `lower`, less the margin that zones
+// state, and the scaling.
+function figuresOfStop({ validity, clearance, scaling }, lower) {
   if (validity === 0) return [["?", "-", "?", "0.00", "-"], "lost"];
-  return [[mm(clearance, 0), "-", mm(clearance, 0), scaling.toFixed(2), "-"], scaling < 1 ? "alarm" : ""];
+  return [[Number.isFinite(lower) ? mm(lower, 0) : "-", "-", mm(clearance, 0), scaling.toFixed(2), "-"], scaling < 1 ? "alarm" : ""];
 }
 
 export class SeparationRows {
@@ -32,22 +33,25 @@ export class SeparationRows {
     this.body = this.section.querySelector("tbody");
   }
 
-  draw({ separation, scene, pairs }, frozen, nowMs) {
+  draw({ separation, report, scene, pairs }, frozen, nowMs) {
     if (nowMs - this.drawnMs < AGAIN_MS) return;
     this.drawnMs = nowMs;
     this.section.hidden = !(separation?.zones.length || separation?.stops?.length);
     if (this.section.hidden) return;
     this.section.classList.toggle("old", frozen);
-    const putRow = (i, name, { pair, validity }, [figures, kind]) => {
+    const putRow = (i, name, { pair, validity, time }, [figures, kind]) => {
       const row = this.body.rows[i] ?? this.body.insertRow();
       while (row.cells.length < 1 + FIGURES) row.insertCell();
       row.className = kind;
-      row.title = `${pairs[pair].name}: ${VALIDITY[validity]}`;
+      row.title = `${pairs[pair].name}: ${VALIDITY[validity]}${time > 0 ? `; stands within ${time.toFixed(2)} s` : ""}`;
       row.onclick = () => this.choose(pair, false);
       [`${name}: ${pairs[pair].name}`, ...figures].forEach((text, cell) => put(row.cells[cell], text));
     };
     const { zones, stops = [] } = separation;
     zones.forEach((zone, i) => putRow(i, scene.zones[zone.zone].name, zone, figuresOf(zone, separation.pairs)));
-    stops.forEach((stop, i) => putRow(zones.length + i, `${scene.robots?.[stop.robot] ?? "robot"} stops`, stop, figuresOfStop(stop)));
+    stops.forEach((stop, i) => {
+      const lower = report?.pairs.find(({ pair }) => pair === stop.pair)?.stop_lower - pairs[stop.pair].margins;
+      putRow(zones.length + i, `${scene.robots[stop.robot]?.name ?? "robot"} stops`, stop, figuresOfStop(stop, lower));
+    });
   }
 }
