@@ -166,7 +166,11 @@ clearance_msg_RobotStop joined_stop(const ShareMap& map, std::span<const ShareVi
     has_any = true;
   }
   if (is_known && has_any) return joined;
-  return {.robot = robot, .clearance = -kNone, .time = std::numeric_limits<double>::quiet_NaN()};
+  clearance_msg_RobotStop unknown{};
+  unknown.robot = robot;
+  unknown.clearance = -kNone;
+  unknown.time = std::numeric_limits<double>::quiet_NaN();
+  return unknown;
 }
 
 }  // namespace
