@@ -23,7 +23,8 @@ constexpr const char* kFooter = R"(Exit status:
   4, 6  see 'send --help'
 
 Examples:
-  clearance-scene import panda.urdf --srdf panda.srdf --joints -o panda.yaml
+  clearance-scene new --robots panda.urdf --on table,person -o panda.yaml
+  clearance-scene new --robots left.urdf,ur.urdf.xacro --xacro name:=ur --xacro ur_type:=ur5e
   clearance-scene import panda.urdf --srdf panda.srdf --max-speed 3 -o panda.yaml
   clearance-scene allow panda.urdf -o panda.srdf
   clearance-scene warehouse 1000 -o warehouse.yaml
@@ -42,7 +43,9 @@ std::vector<Option> robot_options(RobotCellOptions& robot, const char* srdf) {
 CommandLine import_line(ImportArguments& arguments) {
   RobotCellOptions& robot = arguments.robot;
   CommandLine line{
-      .about = "Write a cell file of a robot from its URDF (collision shapes) and SRDF",
+      .about =
+          "Write a cell file in which each link of a robot is an object, whose pose has to "
+          "arrive, from its URDF (collision shapes) and SRDF",
       .name = "import"};
   line.add(robot_options(robot,
                          "The robot's SRDF, which disables pairs, with reasons; without it, pairs "
@@ -61,13 +64,48 @@ CommandLine import_line(ImportArguments& arguments) {
       {"--max-parts", &robot.max_parts,
        "Largest number of parts per mesh; default 24; 1: one hull per mesh",
        whole_number_in(1, 64)},
-      {"--joints", &arguments.joints,
-       "Write the cell of a robot that joint states drive, as clearanced --urdf runs it, to start "
-       "from. Without it, each link is an object, and its pose has to arrive",
-       excluding("--max-speed")},
       force_option(arguments.force),
   });
   return line;
+}
+
+CommandLine new_line(NewArguments& arguments) {
+  const auto are_bodies = [](const std::string& list) {
+    for (std::size_t at = 0; at <= list.size();) {
+      const std::size_t comma = std::min(list.find(',', at), list.size());
+      const std::string body = list.substr(at, comma - at);
+      if (body != "table" && body != "machine" && body != "person") return false;
+      at = comma + 1;
+    }
+    return true;
+  };
+  const auto is_argument = [](const std::string& text) {
+    const std::size_t mark = text.find(":=");
+    return mark != std::string::npos && mark > 0 && text.front() != '-';
+  };
+  return {
+      .about =
+          "Write a commented cell of robots that joint states drive, side by side, to start from. "
+          "An SRDF beside the URDF says which links may touch; without one, 'allow' proposes it",
+      .footer =
+          "Example:\n  clearance-scene new --robots panda.urdf --on table,person -o bench.yaml",
+      .name = "new",
+      .options = {
+          {"--robots", &arguments.robots,
+           "URDF files with commas between, also one file twice; A.urdf,A.srdf names an SRDF that "
+           "is elsewhere. The program xacro expands a file that ends with .xacro, beside the cell",
+           required()},
+          {"--on", &arguments.bodies,
+           "Bodies that the cell has, with commas between: a table that the robots stand on, a "
+           "machine with a door, a person",
+           expecting("a list of table, machine and person, such as table,person", are_bodies)},
+          {"-o,--output", &arguments.output,
+           "The cell file to write; paths in it are relative to it", shown()},
+          {"--xacro", &arguments.xacro, "NAME:=VALUE, an argument for xacro; repeatable",
+           expecting("NAME:=VALUE", is_argument)},
+          packages_option(arguments.packages),
+          force_option(arguments.force),
+      }};
 }
 
 CommandLine allow_line(AllowArguments& arguments) {
@@ -143,6 +181,7 @@ CommandLine stops_line(StopsArguments& arguments) {
 }
 
 int run(int argc, char** argv) {
+  NewArguments fresh;
   ImportArguments import;
   AllowArguments allow;
   WarehouseArguments warehouse;
@@ -152,10 +191,11 @@ int run(int argc, char** argv) {
   SendArguments send;
   CommandLine line{"Writes cell files, reports the models of objects, and changes running scenes.",
                    kFooter};
-  line.subcommands = {import_line(import), allow_line(allow),   warehouse_line(warehouse),
-                      report_line(report), errors_line(errors), stops_line(stops),
-                      send_line(send)};
+  line.subcommands = {new_line(fresh),           import_line(import), allow_line(allow),
+                      warehouse_line(warehouse), report_line(report), errors_line(errors),
+                      stops_line(stops),         send_line(send)};
   if (const auto done = parse(line, argc, argv)) return *done;
+  if (line.chosen == "new") return new_cell(fresh);
   if (line.chosen == "import") return import_robot(std::move(import));
   if (line.chosen == "allow") return allow_collisions(allow);
   if (line.chosen == "warehouse") return make_warehouse(warehouse);

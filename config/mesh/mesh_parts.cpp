@@ -224,10 +224,10 @@ void MeshLibrary::warn_of_error(const MeshUse& use, const MeshParts& parts) cons
       "mm: raise {} in {} [{}]",
       path_of(use).filename().string(), counted(parts.shapes.size(), "part"),
       parts.shapes.size() == 1 ? "es" : "", 1e3 * parts.error, 1e3 * use.limits.tolerance, limits,
-      advice_ == Advice::kCell
-          ? "the cell"
-          : "a cell: 'clearance-scene import URDF --joints -o CELL.yaml' writes the one of this "
-            "robot, with --max-parts and --mesh-tolerance, and 'clearanced CELL.yaml' runs it",
+      advice_ == Advice::kCell ? "the cell"
+                               : "a cell: 'clearance-scene new --robots URDF -o CELL.yaml' writes "
+                                 "one of this robot, with "
+                                 "max_parts and tolerance, and 'clearanced CELL.yaml' runs it",
       kMeshFarFromParts));
 }
 

@@ -19,11 +19,8 @@ std::string name_of(const std::filesystem::path& urdf) {
   return name.empty() ? "robot" : name;
 }
 
-std::string path_text(const std::filesystem::path& path, const SingleRobotOptions& options) {
-  const auto absolute = std::filesystem::absolute(path).lexically_normal();
-  if (options.directory.empty()) return absolute.string();
-  const auto from = std::filesystem::absolute(options.directory).lexically_normal();
-  return absolute.lexically_relative(from).string();
+std::string path_text(const std::filesystem::path& path) {
+  return std::filesystem::absolute(path).lexically_normal().string();
 }
 
 }  // namespace
@@ -37,18 +34,12 @@ std::string single_robot_cell(const SingleRobotOptions& options) {
       << YAML::EndMap;
   out << YAML::Key << "defaults" << YAML::Value << YAML::Flow << YAML::BeginMap << YAML::Key
       << "age_limit_ms" << YAML::Value << options.age_limit_ms;
-  if (options.mesh_tolerance) {
-    out << YAML::Key << "tolerance" << YAML::Value << shortest(*options.mesh_tolerance);
-  }
-  if (options.max_parts) out << YAML::Key << "max_parts" << YAML::Value << *options.max_parts;
   out << YAML::EndMap;
   out << YAML::Key << "robots" << YAML::Value << YAML::BeginSeq << YAML::BeginMap;
   out << YAML::Key << "name" << YAML::Value << YAML::DoubleQuoted << name;
-  out << YAML::Key << "urdf" << YAML::Value << YAML::DoubleQuoted
-      << path_text(options.urdf, options);
+  out << YAML::Key << "urdf" << YAML::Value << YAML::DoubleQuoted << path_text(options.urdf);
   if (!options.srdf.empty()) {
-    out << YAML::Key << "srdf" << YAML::Value << YAML::DoubleQuoted
-        << path_text(options.srdf, options);
+    out << YAML::Key << "srdf" << YAML::Value << YAML::DoubleQuoted << path_text(options.srdf);
   }
   if (!options.joint_states.empty()) {
     out << YAML::Key << "joint_states" << YAML::Value << YAML::DoubleQuoted << options.joint_states;
@@ -58,7 +49,7 @@ std::string single_robot_cell(const SingleRobotOptions& options) {
     out << YAML::Key << "packages" << YAML::Value << YAML::BeginMap;
     for (const auto& [package, directory] : options.packages) {
       out << YAML::Key << YAML::DoubleQuoted << package << YAML::Value << YAML::DoubleQuoted
-          << path_text(directory, options);
+          << path_text(directory);
     }
     out << YAML::EndMap;
   }
@@ -73,7 +64,9 @@ std::string single_robot_cell(const SingleRobotOptions& options) {
 CellResult read_single_robot(const SingleRobotOptions& options, const CellOptions& cell_options) {
   CellOptions of_urdf = cell_options;
   of_urdf.is_of_urdf = true;
-  return parse_cell(single_robot_cell(options), options.urdf, of_urdf);
+  const std::filesystem::path file =
+      options.directory.empty() ? options.urdf : options.directory / options.urdf.filename();
+  return parse_cell(single_robot_cell(options), file, of_urdf);
 }
 
 }  // namespace clearance

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <filesystem>
-#include <optional>
 #include <string>
 #include <utility>
 #include <vector>
@@ -20,11 +19,8 @@ struct SingleRobotOptions {
   double age_limit_ms = 20.0;     // of its joints
   std::string joint_states = {};  // the topic of ROS 2 that has its joints; empty: any by that name
   std::string stamps = {};        // the key of its robot; empty: not stated
-  // The cell's keys `tolerance`, m, and `max_parts`, which limit the parts of meshes.
-  std::optional<double> mesh_tolerance = {};
-  std::optional<unsigned> max_parts = {};
-  // The folder of the cell that will be written: paths are relative to it. Empty: they are
-  // absolute.
+  // The folder of the cell that will be written: parts of meshes are kept there. Empty: beside the
+  // URDF.
   std::filesystem::path directory = {};
 };
 

@@ -59,19 +59,16 @@ std::string chain_urdf() {
          "</robot>\n";
 }
 
-TEST_F(SceneProgram, WritesTheLimitsOfMeshesIntoBothKindsOfCell) {
+TEST_F(SceneProgram, WritesTheLimitsOfMeshesIntoTheCell) {
   std::ofstream(directory_ / "chain.urdf") << chain_urdf();
-  for (const std::vector<std::string>& kind : {std::vector<std::string>{}, {"--joints"}}) {
-    std::vector<std::string> words = {"import",          file("chain.urdf"), "-o",
-                                      file("cell.yaml"), "--force",          "--mesh-tolerance",
-                                      "0.002",           "--max-parts",      "7"};
-    words.insert(words.end(), kind.begin(), kind.end());
-    EXPECT_EQ(run(words), 0) << output_;
-    std::ifstream written(file("cell.yaml"));
-    const std::string text((std::istreambuf_iterator<char>(written)), {});
-    EXPECT_NE(text.find("tolerance: 0.002"), std::string::npos) << text;
-    EXPECT_NE(text.find("max_parts: 7"), std::string::npos) << text;
-  }
+  EXPECT_EQ(run({"import", file("chain.urdf"), "-o", file("cell.yaml"), "--mesh-tolerance", "0.002",
+                 "--max-parts", "7"}),
+            0)
+      << output_;
+  std::ifstream written(file("cell.yaml"));
+  const std::string text((std::istreambuf_iterator<char>(written)), {});
+  EXPECT_NE(text.find("tolerance: 0.002"), std::string::npos) << text;
+  EXPECT_NE(text.find("max_parts: 7"), std::string::npos) << text;
 }
 
 TEST_F(SceneProgram, SaysWhichNeighboursItLeavesOutWithoutAnSrdf) {

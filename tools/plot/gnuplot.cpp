@@ -2,18 +2,11 @@
 
 #include <fmt/format.h>
 
-#include <boost/process/args.hpp>
-#include <boost/process/child.hpp>
-#include <boost/process/exe.hpp>
-#include <boost/process/io.hpp>
-#include <boost/process/pipe.hpp>
 #include <fstream>
-#include <iterator>
-#include <vector>
+
+#include "tools/shared/other_program.hpp"
 
 namespace clearance {
-
-namespace bp = boost::process;
 
 std::string plot_text(const std::string& text) {
   std::string out = "\"";
@@ -27,8 +20,7 @@ std::string plot_text(const std::string& text) {
   return out + "\"";
 }
 
-// The script is a file, so that the pipe is free for gnuplot's messages. env finds gnuplot in PATH,
-// and ends with 127 if it finds none.
+// The script is a file: gnuplot's input is empty.
 std::string plot_svg(const std::filesystem::path& svg, int width, int height,
                      const std::string& script) {
   const std::string file = svg.string() + ".gnuplot";
@@ -36,17 +28,13 @@ std::string plot_svg(const std::filesystem::path& svg, int width, int height,
       "set terminal svg size {},{} dynamic enhanced font 'sans,12' background '#ffffff'\n"
       "set output '{}'\nset encoding utf8\n{}\nunset output\n",
       width, height, svg.string(), script);
-  bp::ipstream output;
-  bp::child gnuplot(bp::exe = "/usr/bin/env", bp::args = std::vector<std::string>{"gnuplot", file},
-                    (bp::std_out & bp::std_err) > output, bp::std_in < bp::null);
-  const std::string words(std::istreambuf_iterator<char>(output), {});
-  gnuplot.wait();
+  const ProgramRun gnuplot = run_program({"gnuplot", file});
   std::error_code ignored;
   std::filesystem::remove(file, ignored);
-  if (gnuplot.exit_code() == 0) return {};
-  if (gnuplot.exit_code() == 127)
+  if (gnuplot.status == 0) return {};
+  if (gnuplot.status == kNotInPath)
     return "gnuplot is needed for plots: Debian's package gnuplot-nox";
-  return fmt::format("gnuplot failed: {}", words.substr(0, 500));
+  return fmt::format("gnuplot failed: {}", gnuplot.said.substr(0, 500));
 }
 
 }  // namespace clearance

@@ -6,14 +6,23 @@
 
 #include "config/write/robot_cell.hpp"
 #include "config/write/warehouse_cell.hpp"
+#include "monitor/app/command_line.hpp"
 #include "tools/scene/sampled_contacts.hpp"
 
 namespace clearance {
 
 struct ImportArguments {
   RobotCellOptions robot;
-  bool joints = false;  // the cell of a robot that is driven by joint states
   std::string output;
+  bool force = false;
+};
+
+struct NewArguments {
+  std::string robots;  // URDF or xacro files, each with its SRDF behind it or none; commas between
+  std::string bodies;  // of table, machine, person; commas between
+  std::vector<std::string> xacro;  // NAME:=VALUE
+  Packages packages;
+  std::string output = "cell.yaml";
   bool force = false;
 };
 
@@ -50,6 +59,7 @@ struct StopsArguments {
 
 // Each carries out one subcommand and returns the exit code.
 [[nodiscard]] int import_robot(ImportArguments arguments);
+[[nodiscard]] int new_cell(const NewArguments& arguments);
 [[nodiscard]] int allow_collisions(const AllowArguments& arguments);
 [[nodiscard]] int make_warehouse(const WarehouseArguments& arguments);
 [[nodiscard]] int report_errors(const ErrorsArguments& arguments);

@@ -6,6 +6,7 @@
 
 #include "config/write/seeded_draw.hpp"
 #include "core/distance.hpp"
+#include "core/shapes.hpp"
 #include "monitor/bodies/forward_kinematics.hpp"
 
 namespace clearance {
@@ -122,7 +123,59 @@ double distance_of(const Scene& scene, const Posable& robot, Watched& watched) {
   return least;
 }
 
+// A link that one joint moves, and that joint is a revolute one with a vertical axis. An axis is
+// the same in the frames of both links of its joint.
+bool turns_level(const Robot& robot, const Posable& posed, std::uint32_t link) {
+  bool turns = false;
+  for (; link > 0; link = robot.joints[link - 1].parent) {
+    const RobotJoint& joint = robot.joints[link - 1];
+    if (joint.type == JointType::kFixed) continue;
+    const bool revolves =
+        joint.type == JointType::kRevolute || joint.type == JointType::kContinuous;
+    const Vec3 axis = posed.pose_of(link).orientation * joint.axis;
+    if (turns || !revolves || std::abs(axis.z()) < 1.0 - 1e-9) return false;
+    turns = true;
+  }
+  return turns;
+}
+
+// A half-space far outside on either side of each axis: the distance from it is a bound.
+LinkExtent extent_of(const Object& object, const Pose& pose) {
+  constexpr double kFar = 1e4;  // m
+  LinkExtent extent{.low = Vec3::Constant(kInfinity), .high = Vec3::Constant(-kInfinity)};
+  for (int axis = 0; axis < 3; ++axis) {
+    for (const double side : {1.0, -1.0}) {
+      const HalfSpace outside{side * Vec3::Unit(axis), -kFar};
+      const auto wall = std::get<ConvexBody>(polyhedron_from_halfspaces({&outside, 1}));
+      for (const Part& part : object.parts) {
+        const Pose placed = compose(pose, part.object_from_part);
+        TrackingState state;
+        const double from_wall =
+            distance(wall, part.shape, relative_pose(Pose{}, placed), state, {}).lower - kFar;
+        double& bound = side > 0.0 ? extent.low[axis] : extent.high[axis];
+        bound = side > 0.0 ? std::min(bound, from_wall) : std::max(bound, -from_wall);
+      }
+    }
+  }
+  return extent;
+}
+
 }  // namespace
+
+std::vector<LinkExtent> extents_at_zero(const Scene& scene) {
+  const Robot& robot = scene.robots.front();
+  Posable posed(scene);
+  posed.pose_at_zero();
+  std::vector<LinkExtent> extents;
+  for (std::uint32_t link = 0; link < robot.links.size(); ++link) {
+    const std::uint32_t object = robot.links[link].object;
+    if (object == RobotLink::kNoObject) continue;
+    extents.push_back(extent_of(scene.objects[object], posed.pose_of(link)));
+    extents.back().object = object;
+    extents.back().turns_level = turns_level(robot, posed, link);
+  }
+  return extents;
+}
 
 std::vector<SampledPair> sample_contacts(const Scene& scene, const SamplingOptions& options) {
   std::vector<Watched> pairs = pairs_of(scene);

@@ -1,4 +1,5 @@
-// Samples which links of a robot touch each other, in random positions of its joints.
+// Samples which links of a robot touch each other, in random positions of its joints, and how far
+// they extend at zero.
 #pragma once
 
 #include <cstdint>
@@ -28,5 +29,16 @@ struct SampledPair {
 // place of the robot's base does not matter. The same seed gives the same counts.
 [[nodiscard]] std::vector<SampledPair> sample_contacts(const Scene& scene,
                                                        const SamplingOptions& options);
+
+// Where a link with shapes is while every joint is at 0, or at the limit next to it.
+struct LinkExtent {
+  std::uint32_t object = 0;                      // index into Scene::objects
+  Vec3 low = Vec3::Zero(), high = Vec3::Zero();  // m: a box around it, in the world
+  // Does it only turn, about the vertical? Its height is then the same in all positions.
+  bool turns_level = false;
+};
+
+// Of the scene's only robot.
+[[nodiscard]] std::vector<LinkExtent> extents_at_zero(const Scene& scene);
 
 }  // namespace clearance

@@ -1,7 +1,4 @@
-#include <cerrno>
 #include <cstdio>
-#include <cstring>
-#include <fstream>
 #include <map>
 #include <string>
 #include <variant>
@@ -18,44 +15,14 @@
 #include "tools/scene/error_report.hpp"
 #include "tools/scene/model_report.hpp"
 #include "tools/scene/stop_report.hpp"
-#include "tools/shared/progress_bar.hpp"
+#include "tools/scene/written_cell.hpp"
 
 namespace clearance {
 namespace {
 
-constexpr const char* kProgram = "clearance-scene";
-
 int print_faults(const UrdfFaults& faults) {
   for (const UrdfFault& fault : faults) print(stderr, "{}\n", fault.text);
   return kFailed;
-}
-
-int write_text(const std::string& text, const std::filesystem::path& output) {
-  std::ofstream stream(output, std::ios::binary);
-  stream << text;
-  stream.close();
-  if (stream) return kOk;
-  print(stderr, "{}: cannot be written: {}\n", output.string(), std::strerror(errno));
-  return kFailed;
-}
-
-// A cell that was written is read back, so that its mistakes show at once.
-int write_cell(const std::string& yaml, const std::string& output) {
-  if (const int failed = write_text(yaml, output); failed != kOk) return failed;
-  const auto cell = cell_or_errors(read_cell(output, told_on_stderr()));
-  if (!cell) return kBadCell;
-  print(stdout, "{}: {}\n", output, summary(cell->scene));
-  return kOk;
-}
-
-std::string joint_cell(const RobotCellOptions& robot) {
-  return single_robot_cell({.urdf = robot.urdf,
-                            .srdf = robot.srdf,
-                            .packages = robot.packages,
-                            .age_limit_ms = robot.age_limit_ms,
-                            .mesh_tolerance = robot.mesh_tolerance,
-                            .max_parts = robot.max_parts,
-                            .directory = robot.directory});
 }
 
 // kOk, or the exit code after the reason has gone to stderr.
@@ -64,19 +31,12 @@ int check_output(const RobotCellOptions& robot, const std::string& output, bool 
   return can_create(kProgram, output, force) ? kOk : kFailed;
 }
 
-std::vector<SampledPair> sample_with_progress(const Scene& scene, SamplingOptions options) {
-  ProgressBar bar;
-  options.progress = [&bar](double share) { bar.show(share, "joint positions"); };
-  return sample_contacts(scene, options);
-}
-
 }  // namespace
 
 int import_robot(ImportArguments arguments) {
   const int refused = check_output(arguments.robot, arguments.output, arguments.force);
   if (refused != kOk) return refused;
   arguments.robot.directory = std::filesystem::absolute(arguments.output).parent_path();
-  if (arguments.joints) return write_cell(joint_cell(arguments.robot), arguments.output);
   const auto result = robot_cell(arguments.robot);
   if (const auto* faults = std::get_if<UrdfFaults>(&result)) return print_faults(*faults);
   const RobotCell& cell = std::get<RobotCell>(result);

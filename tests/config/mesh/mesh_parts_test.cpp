@@ -357,7 +357,7 @@ TEST_F(PartsOfMeshes, OfAUrdfAloneComeWithTheAdviceToWriteACell) {
                         {.tell = [&told](const std::string& line) { told += line + "\n"; }});
   const auto* errors = std::get_if<std::vector<CellError>>(&result);
   EXPECT_EQ(nullptr, errors) << errors->front().text;
-  EXPECT_THAT(told, HasSubstr("clearance-scene import URDF --joints"));
+  EXPECT_THAT(told, HasSubstr("clearance-scene new --robots URDF"));
 }
 
 TEST_F(PartsOfMeshes, RefuseLimitsThatMakeNoSense) {

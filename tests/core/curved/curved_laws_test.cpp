@@ -126,8 +126,6 @@ TEST(CurvedLaws, MovedByTheDistanceTheyTouch) {
     const double apart = (r.point_on_b - r.point_on_a - r.distance * r.normal).norm();
     EXPECT_NEAR(s.distance, 0.0, apart + (r.upper - r.lower) + 1e-14 * e.size(r))
         << "seed " << seed;
-    if (seed == 161)
-      printf("apart %g width %g size %g got %g\n", apart, r.upper - r.lower, e.size(r), s.distance);
   }
 }
 
