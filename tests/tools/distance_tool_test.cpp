@@ -169,7 +169,7 @@ TEST_F(DistanceTool, TracksAMotionAndGivesOneEntryAPose) {
   }
 }
 
-// Not of each motion: a pose may be far from the one before.
+// A single motion may need more: a pose may be far from the one before.
 TEST_F(DistanceTool, TrackingTakesFewerIterationsThanColdQueries) {
   Random random(5);
   std::string lines;
