@@ -169,7 +169,7 @@ TEST_F(DistanceTool, TracksAMotionAndGivesOneEntryAPose) {
   }
 }
 
-// Not of each motion: a pose may be far from the one before.
+// Sums over motions: in one of them, a pose may be far from the one before.
 TEST_F(DistanceTool, TrackingTakesFewerIterationsThanColdQueries) {
   Random random(5);
   std::string lines;
