@@ -1,8 +1,8 @@
 // The least distance of each pair of objects by itself, and the first place at which one of them
 // may be below its margin.
 //
-// Stretches are examined level by level, so that a search that ends by its work limit has bounds of
-// all pairs that are about equally good.
+// The stretch with the bound that is farthest from what is needed comes first, so that a search
+// that ends by its work limit has bounds of all pairs that are about equally good.
 #include <algorithm>
 #include <cmath>
 

@@ -31,6 +31,11 @@ class MotionSearch {
   [[nodiscard]] std::vector<Lever> levers(std::uint32_t pair) const;
   // No stated error changes the distance of that pair by more, m.
   [[nodiscard]] double model_error(std::uint32_t pair) const;
+  // Whether a lower bound shows that a limit is kept, m. One of 0 demands that the bodies do not
+  // touch, and one below 0 is that of a contact which is meant.
+  [[nodiscard]] static bool proves(double lower, double limit) noexcept {
+    return limit != 0.0 ? lower >= limit : lower > 0.0;
+  }
 
  private:
   // A query is worth its time only if it may decide the pair. The motion that counts, along the
@@ -42,10 +47,6 @@ class MotionSearch {
   // Shorter stretches are not divided for a pair whose bounds at an instant enclose the margin,
   // relative to the duration.
   static constexpr double kUnclear = 0x1p-8;
-  // A limit below 0 is that of a contact which is meant.
-  [[nodiscard]] static bool proves(double lower, double limit) noexcept {
-    return limit != 0.0 ? lower >= limit : lower > 0.0;
-  }
   [[nodiscard]] static bool is_below(double upper, double limit) noexcept {
     return limit != 0.0 ? upper < limit : upper <= 0.0;
   }

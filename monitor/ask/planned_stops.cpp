@@ -155,7 +155,8 @@ void PlannedStops::bound(std::size_t at) noexcept {
   }
 }
 
-// The motion goes on in a line until the brakes act, and then as long as it may.
+// From the last waypoint, the motion goes on in a line until the brakes act, and then for the reach
+// of a stop.
 double PlannedStops::time_past_the_end() const noexcept {
   const double reaction = rounded_up(factor_ * stops_->reaction);
   double longest = rounded_up(reaction + pieces_.back().reach);

@@ -26,7 +26,7 @@ class PlannedStops {
   // Allocates for robots of this scene. The scene must outlive it.
   explicit PlannedStops(const Scene& scene);
 
-  // Takes a question after its trajectory, or returns why its motion has no stops that are known.
+  // Reads a question whose trajectory is known, or returns why nothing is known of its stops.
   // The trajectory gets a further segment if the robot still moves at its end.
   [[nodiscard]] std::optional<std::string> take(const Question& question, Trajectory& trajectory);
 
@@ -47,8 +47,9 @@ class PlannedStops {
   void place(const Stretch& stretch, double at, std::span<TrackedVariable> variables) noexcept;
   // After place(): adds by how much the joints deviate from there.
   void add_deviations(std::span<Nearing> freedom) const noexcept;
-  // After place(): for how long the others have moved since the first waypoint, or since the robot
-  // was told to stop, if it is at places of the stretch.
+  // After place(): for how long the others have moved when the robot is at places of the stretch.
+  // With count() it is since the first waypoint, with count_scaled() since the robot was told to
+  // stop.
   [[nodiscard]] const Instants& elapsed() const noexcept { return elapsed_; }
   // The same on the clock of the waypoints.
   [[nodiscard]] const Instants& clock() const noexcept { return clock_; }
@@ -65,8 +66,8 @@ class PlannedStops {
     Stretch stretch;
     double reach = 0.0;    // s: a stop that begins here goes on for no more of the path
     double braking = 0.0;  // s: until it stands
-    // The same of earlier ones that reach this piece: the latest instant at which they stand, s
-    // since the first waypoint. With since_told_: the longest braking.
+    // Of stops that begin in earlier pieces and reach this one: the latest instant at which the
+    // robot stands, s since the first waypoint. With since_told_: the longest braking, s.
     double earlier = -kInfinity;
   };
   // The places of a joint beside the path, in a stop that begins in a piece.

@@ -20,9 +20,8 @@ constexpr double kShare = 1e-3;           // of the motion: where it is not clea
 constexpr std::uint32_t kMostWork = 800;  // queries and placements of a robot in a tick
 constexpr std::uint32_t kHalvings = 4;    // of a share of the speed
 
-// A margin of 0 demands that the bodies do not touch.
 bool keeps(double lower, double margin) noexcept {
-  return margin != 0.0 ? lower - kRounding >= margin : lower > kRounding;
+  return MotionSearch::proves(lower - kRounding, margin);
 }
 
 }  // namespace

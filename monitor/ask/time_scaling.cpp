@@ -111,7 +111,7 @@ void MotionSearch::scale_stops() {
   posture_.stops().count_none();
 }
 
-// The verdict of the margins of which none is free, or the last one's.
+// Returns kFree if all margins are kept, else the verdict of the first that is not.
 Verdict MotionSearch::stops_scaled(double factor, MarginAnswer& limit) {
   posture_.count_stops(factor);
   const auto is_free = [&](double margin) {

@@ -137,7 +137,7 @@ bool allows_minimum(const clearance_msg_Distances& report,
   return report.lower_all >= least.upper || (report.minimum_certified && is_tight);
 }
 
-// A robot is clear if it is clear in each share. Who has no pair of it still reports it.
+// A robot is clear if it is clear in each share. Shares without pairs of it report it as well.
 clearance_msg_RobotStop joined_stop(const ShareMap& map, std::span<const ShareView> views,
                                     std::uint32_t robot) {
   clearance_msg_RobotStop joined{};

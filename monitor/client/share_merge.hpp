@@ -58,7 +58,7 @@ class ShareMap {
   }
   // The zones with `separation` that have a pair of any share, ascending.
   [[nodiscard]] const std::vector<std::uint32_t>& separated() const noexcept { return separated_; }
-  // The robots that state how they stop, ascending.
+  // The robots that state how they stop, as indices into Scene::robots, ascending.
   [[nodiscard]] const std::vector<std::uint32_t>& stopping() const noexcept { return stopping_; }
   // The first pair of a share in the cell, for a zone that is active because of it.
   [[nodiscard]] std::uint32_t first_pair(std::size_t share) const { return first_pairs_[share]; }
@@ -83,9 +83,11 @@ class ShareMap {
 void join_reports(const ShareMap& map, std::span<const ShareView> views,
                   clearance_msg_Distances& out);
 
-// The same for separations, with an entry for each of map.separated(). A zone of a share that is
-// not whole, or that has no separation of the time of its report, has validity 0 and scaling 0, as
-// its pairs. So has each of map.stopping() if there is such a share. Else the worst share counts.
+// The same for separations, with an entry for each of map.separated() and map.stopping(). A zone of
+// a share that is not whole, or that has no separation of the time of its report, has validity 0
+// and scaling 0, as its pairs. If there is such a share, so has each robot. Otherwise the share
+// with the least scaling counts. Of validity, clearance and share of the motion, the least of all
+// counts, and of the times of stops the longest.
 void join_separations(const ShareMap& map, std::span<const ShareView> views,
                       clearance_msg_Separation& out);
 

@@ -128,7 +128,7 @@ void add_options(CommandLine& line, Arguments& arguments) {
       ros_outputs_option(arguments.ros, {"--share"}),
       {"--use-sim-time", &arguments.use_sim_time,
        "The time is that of a simulation, by /clock of ROS 2, as 'use_sim_time: true' of 'ros2' in "
-       "the cell says (idl/ROS.md)",
+       "the cell says (idl/SIMULATED_TIME.md)",
        excluding("--share")},
   });
   add_inputs(line, arguments);

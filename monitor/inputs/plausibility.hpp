@@ -212,8 +212,9 @@ class Plausibility {
     return age_limits * limits.age_limit_ns;
   }
 
-  // True if the sent rates contradict the values, which are right. This ends when the values agree
-  // with rates that have moved. Until then no value is refused because of the rates.
+  // True if the sent rates contradict the values, which count as right. This ends when the values
+  // agree with rates that have moved, or when they move less than the rates say. The latter ends it
+  // only if no rate was one that the input cannot have.
   [[nodiscard]] bool rates_contradict() const noexcept { return rates_contradict_; }
   // Call this for a rate that the input cannot have.
   void distrust_rates() noexcept { rates_contradict_ = rates_are_impossible_ = true; }
@@ -238,7 +239,7 @@ class Plausibility {
   OtherPlace<Metric> other_place_;
   bool value_contradicts_rates_ = false;  // the sample checked last
   bool rates_contradict_ = false;
-  bool rates_are_impossible_ = false;  // one was: whatever else they say, the values are right
+  bool rates_are_impossible_ = false;  // one was: no value is refused because of the rates
   // Stamp until which the values have to agree with the rates.
   std::int64_t values_contradict_until_ns_ = std::numeric_limits<std::int64_t>::min();
 };

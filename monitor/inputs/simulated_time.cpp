@@ -9,7 +9,7 @@
 namespace clearance {
 namespace {
 
-// No simulation runs faster than so many times the true time.
+// A simulation is assumed to run at most this many times as fast as the true time.
 constexpr std::int64_t kFastest = 10;
 
 }  // namespace

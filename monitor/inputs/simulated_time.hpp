@@ -1,8 +1,8 @@
 // The time of a simulation, from the messages of its clock (/clock of ROS 2).
 //
 // A message states the simulated time at which it was sent. Until the next one comes, the time goes
-// on as between the last two, by at most the step between them: so it is never ahead of the clock
-// by more than one step. The same time again is a pause, in which nothing ages.
+// on as between the last two, by at most the step between them. So it is never ahead of the clock
+// by more than one step. A message with the same time again is a pause, in which nothing ages.
 //
 // A clock that goes back has begun anew. One that is silent for kSilentNs may be paused, or dead.
 // Both mean that an unknown time has passed (TickTime), and inputs count when they come again.
@@ -22,7 +22,7 @@ namespace clearance {
 class SimulatedTime {
  public:
   static constexpr std::int64_t kSilentNs = 1'000'000'000;
-  // A larger step is a jump: the time does not go on between the two.
+  // A larger step is a jump: the time stands still from then until the next message.
   static constexpr std::int64_t kLongestStepNs = 250'000'000;
 
   enum class Change : std::uint8_t { kGoesOn, kFirst, kBack };
@@ -39,8 +39,9 @@ class SimulatedTime {
   [[nodiscard]] std::int64_t clock_ns() const noexcept;
   // The present time; 0 before the first message.
   [[nodiscard]] std::int64_t now_ns(std::int64_t monotonic_ns) const noexcept;
-  // The time at which a message was sent, of the clock's machine or of one that has its time. What
-  // was sent before the messages that are kept counts as older than it is.
+  // The simulated time at which something was sent. `sent_ns` is CLOCK_REALTIME of the clock's
+  // machine, or of one that is synchronised with it. What was sent before the messages that are
+  // kept counts as older than it is.
   [[nodiscard]] std::int64_t at(std::int64_t sent_ns) const noexcept;
 
   // The time of the coming tick: later than that of the tick before, unless an unknown time has
@@ -52,8 +53,8 @@ class SimulatedTime {
   struct Segment {
     std::int64_t sent_ns = 0, came_ns = 0;
     std::int64_t clock_ns = 0;  // its time
-    // The simulated time when it was sent, and until the next one comes at most. The former is that
-    // of the message, unless the time went on farther before.
+    // The simulated time when it was sent, and the latest one until the next message comes. The
+    // former is `clock_ns`, unless the time had gone on farther by then.
     std::int64_t begin_ns = 0, end_ns = 0;
     std::int64_t step_ns = 0, interval_ns = 1;  // simulated and true time between the last two
     std::uint64_t resets = 0;

@@ -7,10 +7,9 @@
 namespace clearance {
 
 struct TickTime {
-  // CLOCK_REALTIME at the start of the daemon, plus the time that has passed since; or the time of
-  // a simulation (SimulatedTime), which is then that of all stamps. A value below
-  // that of the tick before means that an unknown time has passed. Every pose is then late until
-  // the next one comes.
+  // CLOCK_REALTIME at the start of the daemon, plus the time that has passed since. Or the time of
+  // a simulation (SimulatedTime), in which all stamps then are. A value below that of the tick
+  // before means that an unknown time has passed. Every pose is then late until the next one comes.
   std::int64_t now_ns = 0;
   // CLOCK_REALTIME minus `now_ns`. It becomes nonzero when this machine's clock is stepped
   // while the daemon runs.

@@ -114,6 +114,7 @@ struct MarginBetween {
   double margin = 0.0;  // m, from 0 on
 };
 
+// What is known of a pair before a search.
 struct KnownBound {
   double lower = -kInfinity;  // m: no distance of the pair is less
   bool is_enough = false;     // the pair is not examined
@@ -137,7 +138,7 @@ struct Question {
   std::optional<std::vector<MeantContact>> contacts;
   OthersMove others = OthersMove::kWithinMaxSpeed;
   // The robot may be told to stop at any instant of the motion. All bounds and margins then count
-  // where it may be until it stands (monitor/ask/STOPS.md), and no other motion is stated.
+  // where it may be until it stands (monitor/ask/PLANNED_STOPS.md). No other motion may be stated.
   bool stoppable = false;
   // m, from 0 on. A margin counts for all pairs but those that a robot's own build keeps nearer in
   // every posture (monitor/pairs/kept_near.hpp).
@@ -146,7 +147,7 @@ struct Question {
   // By Scene::pairs, the margin of each pair, m; -infinity: it has none. `margins` and
   // `margins_between` do not count then. Empty: not asked for.
   std::span<const double> margins_by_pair = {};
-  // With `margins_by_pair`, and like it: what is proven of each pair already.
+  // With `margins_by_pair`, and by pair like it: what is proven already. Empty: nothing is.
   std::span<const KnownBound> known_by_pair = {};
   double tolerance = 1e-3;  // m: `upper` - `lower` at the end
   // m: a margin is undecided if the least distance is nearer to it than this.

@@ -52,7 +52,7 @@ struct PairReport {
   // moved from its former pose in use to its present one as monitor/schedule/SWEPT.md says. If the
   // two objects together deviate from that motion by e, the bound is lower by e. A late object may
   // also deviate by its unobserved motion. The bound equals `lower` for a pair that was not known
-  // at the last tick, and for one with a new picture of a sensor. It is -infinity for an unknown
+  // at the last tick, and for one with a new frame of a sensor. It is -infinity for an unknown
   // pair, and after a discontinuity of 10 km.
   double swept_lower = 0.0;
   // m: by which `lower` is below the bound for the model as stated, because of the errors that the

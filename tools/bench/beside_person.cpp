@@ -128,7 +128,7 @@ struct Outcome {
   double least_m = kInfinity;  // distance from the person while the arm moves
 };
 
-// The arm on its motion, forth and back. It takes a reaction until a command acts, and brakes on
+// The arm on its motion, back and forth. A command acts after the reaction, and the arm brakes on
 // its path within its table.
 class Arm {
  public:
@@ -216,7 +216,7 @@ double allowed(const Scene& scene, const Report& report, Obeyed obeyed, double s
   return scaling < 1.0 ? scaling * share : 1.0;
 }
 
-// The person walks to and fro past the arm, as the seed says.
+// The person walks back and forth past the arm, as the seed says.
 class Walk {
  public:
   explicit Walk(std::uint64_t seed) {

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdint>
+#include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <string>
@@ -18,6 +20,12 @@
 namespace clearance::test {
 
 inline constexpr double kPersonSpeed = 1.6;  // m/s
+
+// The first of the seeds that a test draws.
+inline std::uint64_t first_seed() {
+  const char* stated = std::getenv("CLEARANCE_STOPS_SEED");
+  return stated == nullptr ? 1 : std::strtoull(stated, nullptr, 10);
+}
 
 inline Scene arms_that_stop(const std::string& left, const std::string& right,
                             const std::string& zones = "") {
@@ -43,6 +51,12 @@ inline bool moves(const Scene& scene, const Robot& robot, std::size_t joint) {
   return variables_of(of.type) == 1 && scene.variables[of.variable].name == of.name;
 }
 
+// The share of its distance that a joint has gone after a time `t` of a stop that takes `time`, s.
+// A power of 1 keeps the speed, and of 2 the deceleration.
+inline double share_gone(double t, double time, double power) {
+  return 1.0 - std::pow(std::max(0.0, 1.0 - t / time), power);
+}
+
 // How far a joint has come after a time of its stop from a speed, by some law that fits its table:
 // it needs no more than the table says, and often less.
 inline double went(const JointStop& stop, double speed, double t, Random& random) {
@@ -51,7 +65,7 @@ inline double went(const JointStop& stop, double speed, double t, Random& random
   if (!(distance > 0.0)) return 0.0;
   const double steepest = std::max(1.0, speed * time / distance);
   const double power = random.uniform(1.0, steepest);
-  return distance * (1.0 - std::pow(1.0 - std::min(1.0, t / time), power));
+  return distance * share_gone(t, time, power);
 }
 
 inline const std::string kSomeStops = "{reaction_ms: 50, path: kept, time_ms: 200}";

@@ -22,8 +22,8 @@
 namespace clearance {
 namespace {
 
+using test::first_seed, test::ObeyingRobot;
 using test::kStart, test::kTick;
-using test::ObeyingRobot;
 
 constexpr double kOracle = 2e-9;        // m
 constexpr double kFastest = 20.0;       // m/s: no two points of this cell approach faster
@@ -205,10 +205,8 @@ TEST(ObeyedStops, ComeNearerIfTheBrakesActLaterThanStated) {
 
 // CLEARANCE_STOPS_SEED: the first of the runs. CLEARANCE_STOPS_SHOW prints how many there were.
 TEST(ObeyedStops, KeepEachMarginUntilTheRobotStands) {
-  const char* stated = std::getenv("CLEARANCE_STOPS_SEED");
-  const std::uint64_t first = stated == nullptr ? 1 : std::strtoull(stated, nullptr, 10);
   JudgedRuns all;
-  for (std::uint64_t seed = first; seed < first + repeats(80); ++seed) {
+  for (std::uint64_t seed = first_seed(); seed < first_seed() + repeats(80); ++seed) {
     JudgedRuns judged;
     SimulatedCell(seed).go(judged);
     EXPECT_EQ(judged.nearer, 0u) << "seed " << seed << ", " << judged.least_left << " m, "

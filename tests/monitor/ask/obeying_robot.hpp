@@ -106,9 +106,7 @@ class ObeyingRobot {
   // A stop in proportion, in seconds of the robot's own profile.
   struct Braking {
     double distance = 0.0, time = 0.0, power = 1.0, elapsed = 0.0;
-    [[nodiscard]] double went(double t) const {
-      return distance * (1.0 - std::pow(std::max(0.0, 1.0 - t / time), power));
-    }
+    [[nodiscard]] double went(double t) const { return distance * share_gone(t, time, power); }
     [[nodiscard]] double speed(double t) const {
       return t >= time ? 0.0 : distance * power / time * std::pow(1.0 - t / time, power - 1.0);
     }
@@ -216,7 +214,7 @@ class ObeyingRobot {
     for (Joint& joint : joints_) {
       if (joint.time == 0.0) continue;
       const double left = std::max(0.0, 1.0 - elapsed_ / joint.time);
-      joint.position = joint.from + joint.distance * (1.0 - std::pow(left, joint.power));
+      joint.position = joint.from + joint.distance * share_gone(elapsed_, joint.time, joint.power);
       joint.velocity =
           left > 0.0 ? joint.distance * joint.power / joint.time * std::pow(left, joint.power - 1.0)
                      : 0.0;

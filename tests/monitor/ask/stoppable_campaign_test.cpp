@@ -23,6 +23,8 @@
 namespace clearance {
 namespace {
 
+using test::first_seed;
+
 constexpr double kOfOracle = 2e-9;  // m: what the oracle rounds
 // Streams of random numbers begin so many draws apart: those of successive seeds overlap.
 constexpr std::uint64_t kStreams = 1'000'003;
@@ -249,11 +251,6 @@ struct Loose {
 };
 
 // CLEARANCE_STOPS_SEED: the first of the scenes.
-std::uint64_t first_seed() {
-  const char* stated = std::getenv("CLEARANCE_STOPS_SEED");
-  return stated == nullptr ? 1 : std::strtoull(stated, nullptr, 10);
-}
-
 TEST(StoppableCampaign, NoSampledStopContradictsAnAnswer) {
   std::size_t free = 0, below = 0, undecided = 0, samples = 0;
   for (std::uint64_t seed = first_seed(); seed < first_seed() + repeats(60); ++seed) {

@@ -323,8 +323,7 @@ class StoppingMachine {
     const double own = own_time(robot, joint, std::min(t, robot.brakes));
     double at = joint.position + (joint.velocity + 0.5 * joint.turns * own) * own;
     if (t <= robot.brakes || joint.time <= 0.0) return at;
-    const double left = std::max(0.0, 1.0 - (t - robot.brakes) / joint.time);
-    const double went = joint.distance * (1.0 - std::pow(left, joint.power));
+    const double went = joint.distance * share_gone(t - robot.brakes, joint.time, joint.power);
     if (!of.stopping.keeps_path) return at + std::copysign(went, joint.braked);
     return at + (joint.braked + 0.5 * joint.turns * went) * went;
   }

@@ -13,14 +13,10 @@
 namespace clearance {
 namespace {
 
-using test::Judged, test::StoppingMachine;
+using test::first_seed, test::Judged, test::StoppingMachine;
 
 constexpr int kPostures = 24;  // of a cell
 
-std::uint64_t first_seed() {
-  const char* stated = std::getenv("CLEARANCE_STOPS_SEED");
-  return stated == nullptr ? 1 : std::strtoull(stated, nullptr, 10);
-}
 const test::RecordedMotion& motion() {
   static const test::RecordedMotion read(std::getenv("CLEARANCE_STOPS_MOTION"));
   return read;

@@ -170,7 +170,7 @@ TEST(SimulatedTime, JumpsForwardWithoutGoingOnAsFast) {
   EXPECT_EQ(of.time.now_ns(of.now() + 500 * kMillisecond), jumped);
 }
 
-// Of a message from before all that is known, nothing but that it is old.
+// Nothing is known of a message from before all that is kept, but that it is old.
 TEST(SimulatedTime, OfAMessageFromBeforeTheFirstOneIsOlderThanIt) {
   Simulation of(10.0, kMillisecond);
   of.say(of.clock());
