@@ -299,8 +299,7 @@ TEST(ViewOfAUrdf, ShowsVisualMeshesWhereTheUrdfHasThem) {
   EXPECT_EQ(found["modes"], json({mode("Looks", true, 2, false), mode("Both", true, 2, true),
                                   mode("Bodies", false, 0, false)}));
   // A link draws them at once. Bodies have the colour of the first look of their link.
-  ChildProcess linked("/usr/bin/env", {"node", kScripts + "/view_page.mjs",
-                                       view.page() + "?robots=both", "robots"});
+  PageScript linked("view_page", {view.page() + "?robots=both", "robots"});
   EXPECT_EQ(linked.wait(std::chrono::seconds(280)), 0) << linked.output();
   const std::vector<json> of_link = lines_of(linked);
   ASSERT_FALSE(of_link.empty()) << linked.output();
