@@ -58,7 +58,7 @@ KnownBound MotionSearch::known_of(std::size_t objects) const noexcept {
   return question_->known_by_pair.empty() ? KnownBound() : question_->known_by_pair[objects];
 }
 
-// Pairs of which enough is known are left out, and those without a margin if only margins count.
+// Omits pairs whose known bound is enough, and those without a margin if only margins count.
 void MotionSearch::wait_for_all() noexcept {
   stretches_.clear();
   waiting_.clear();
@@ -85,8 +85,8 @@ double MotionSearch::enough_for_least(std::uint32_t pair) noexcept {
   return std::min(question_->far_enough, least_of(pair).reached - question_->tolerance);
 }
 
-// Where the pair is not proven to keep its margin, a stretch matters that begins before the first
-// such place so far.
+// A stretch matters to a pair that is not proven to keep its margin in it, if it begins before the
+// first such place so far.
 bool MotionSearch::seeks_first(const Stretch& stretch, const WaitingPair& of) const noexcept {
   const MarginAnswer& first = answer_->margins.front();
   return !proves(of.lower, margin_of(of.pair)) &&

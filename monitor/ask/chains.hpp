@@ -27,8 +27,8 @@ struct ChainJoint {
   double largest_reach = kInfinity;
 };
 
-// What brings two bodies nearer to each other: if each variable changes by at most its bound, their
-// distance falls by at most the sum of the bounds times these factors.
+// The share of a variable in how much nearer two bodies come: if each variable changes by at most
+// its bound, their distance falls by at most the sum of the bounds times these factors.
 struct Lever {
   std::uint32_t variable = 0;  // as Chains::of_carrier() counts them
   double factor = 0.0;         // m/rad, or 1; infinity: there is no bound
@@ -88,7 +88,7 @@ class Chains {
     return static_cast<std::uint32_t>(scene_.variables.size()) + 2 * robot;
   }
 
-  // From the base to the tip. An axis with no bound has an infinite or immense reach.
+  // Lists them from the base to the tip. An axis with no bound has an infinite or immense reach.
   [[nodiscard]] std::span<const ChainJoint> joints(const Chain& chain) const noexcept {
     return std::span(joints_).subspan(chain.begin, chain.end - chain.begin);
   }

@@ -55,20 +55,16 @@ MotionSearch::MotionSearch(const Scene& scene)
   }
 }
 
-std::vector<Lever> MotionSearch::levers(std::uint32_t pair) const {
-  const auto at = std::ranges::find(watched_, pair) - watched_.begin();
-  const Bundle& bundle = bundle_of(static_cast<std::uint32_t>(at));
-  std::vector<Lever> levers;
+// All parts of a pair of objects have one chain.
+double MotionSearch::add_levers(std::uint32_t pair, std::vector<Lever>& levers) const {
+  const auto part = std::ranges::find(watched_, pair);
+  if (part == watched_.end()) return kInfinity;
+  const Bundle& bundle = bundle_of(static_cast<std::uint32_t>(part - watched_.begin()));
   for (const ChainJoint& joint : posture_.chains().joints(bundle.chain)) {
     const double reach = joint.largest_reach < kLargestLength ? joint.largest_reach : kInfinity;
     levers.push_back({joint.variable, joint.factor * (joint.rotates ? reach : 1.0)});
   }
-  return levers;
-}
-
-double MotionSearch::model_error(std::uint32_t pair) const {
-  const auto at = std::ranges::find(watched_, pair) - watched_.begin();
-  return bundle_of(static_cast<std::uint32_t>(at)).model_error;
+  return bundle.model_error;
 }
 
 std::optional<std::string> MotionSearch::fault(const Question& question) const {

@@ -27,10 +27,9 @@ class MotionSearch {
   // Does what Asker::ask() does, for a question without payloads.
   [[nodiscard]] std::optional<std::string> ask(const Question& question, Answer& answer);
 
-  // Of one of Scene::pairs, which has to have a link that moves.
-  [[nodiscard]] std::vector<Lever> levers(std::uint32_t pair) const;
-  // No stated error changes the distance of that pair by more, m.
-  [[nodiscard]] double model_error(std::uint32_t pair) const;
+  // Adds the levers of one of Scene::pairs. Returns what no stated error changes its distance by
+  // more than, m; infinity: the pair has no link.
+  [[nodiscard]] double add_levers(std::uint32_t pair, std::vector<Lever>& levers) const;
   // Whether a lower bound shows that a limit is kept, m. One of 0 demands that the bodies do not
   // touch, and one below 0 is that of a contact which is meant.
   [[nodiscard]] static bool proves(double lower, double limit) noexcept {

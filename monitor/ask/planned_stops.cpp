@@ -29,7 +29,7 @@ std::optional<std::string> PlannedStops::take(const Question& question, Trajecto
   goes_on_ = std::ranges::any_of(onward_, [](double velocity) { return velocity != 0.0; });
   may_deviate_ = !stops_->keeps_path;
   for (std::size_t k = 0; k < joints_.size(); ++k) {
-    // What slides comes to its limits past the end, and there it leaves the path.
+    // A sliding joint comes to its limits past the end, and there it leaves the path.
     if (joints_[k].slides && onward_[k] != 0.0) {
       may_deviate_ = true;
       onward_[k] = 0.0;
@@ -155,7 +155,7 @@ void PlannedStops::bound(std::size_t at) noexcept {
   }
 }
 
-// From the last waypoint, the motion goes on in a line until the brakes act, and then for the reach
+// The motion goes on in a line past the last waypoint: until the brakes act, and then for the reach
 // of a stop.
 double PlannedStops::time_past_the_end() const noexcept {
   const double reaction = rounded_up(factor_ * stops_->reaction);

@@ -37,7 +37,7 @@ class PlannedStops {
   void count_scaled(double factor, Trajectory& trajectory) noexcept {
     count(factor, true, trajectory);
   }
-  // From now on the robot is where the motion has it.
+  // Leaves the robot where the motion has it, until the next count().
   void count_none() noexcept { counts_ = false; }
   [[nodiscard]] bool counts() const noexcept { return counts_; }
   // A joint may leave the path in a stop.
@@ -66,8 +66,8 @@ class PlannedStops {
     Stretch stretch;
     double reach = 0.0;    // s: a stop that begins here goes on for no more of the path
     double braking = 0.0;  // s: until it stands
-    // Of stops that begin in earlier pieces and reach this one: the latest instant at which the
-    // robot stands, s since the first waypoint. With since_told_: the longest braking, s.
+    // The latest instant at which a stop that begins in an earlier piece and reaches this one is
+    // over, s since the first waypoint. With since_told_: the longest braking, s.
     double earlier = -kInfinity;
   };
   // The places of a joint beside the path, in a stop that begins in a piece.

@@ -99,11 +99,9 @@ void Stops::add_pairs(StoppingRobot& robot) const {
                                      : is_near              ? -kInfinity
                                                             : 0.0,
                            .first_lever = static_cast<std::uint32_t>(robot.levers.size())});
-    const std::vector<Lever> levers = search_->levers(p);
-    robot.levers.insert(robot.levers.end(), levers.begin(), levers.end());
     WatchedPair& added = robot.pairs.back();
+    added.model_error = search_->add_levers(p, robot.levers);
     added.end_lever = static_cast<std::uint32_t>(robot.levers.size());
-    added.model_error = search_->model_error(p);
     const bool is_tracked =
         robot_of_object_[added.other] == kNone && !scene_.objects[added.other].fixed;
     added.tracked = is_tracked ? added.other : kNone;

@@ -12,7 +12,7 @@
 namespace clearance::merge {
 namespace {
 
-// A zone or separation that no share has reported counts as that of a share that is not heard.
+// What no share has reported of a zone or a stop counts as that of a share that is not heard.
 void fill_report(const Scene& scene, const client::SharedCell& whole, Report& out) {
   from_wire(*whole, out);
   out.zones.assign(scene.zones.size(), {.active = true, .cause = ZoneCause::kNoShare});
@@ -20,12 +20,18 @@ void fill_report(const Scene& scene, const client::SharedCell& whole, Report& ou
     if (id < out.zones.size()) from_wire(state, out.zones[id]);
   }
   out.separated_zones.clear();
+  out.stops.clear();
   if (whole.separation() != nullptr) from_wire(*whole.separation(), out);
   for (std::uint32_t zone = 0; zone < scene.zones.size(); ++zone) {
     if (!scene.zones[zone].separation) continue;
     const auto is_this = [=](const ZoneSeparation& each) { return each.zone == zone; };
     if (std::ranges::none_of(out.separated_zones, is_this))
       out.separated_zones.push_back({.zone = zone});
+  }
+  for (std::uint32_t robot = 0; robot < scene.robots.size(); ++robot) {
+    if (!scene.robots[robot].stopping.is_stated()) continue;
+    const auto is_this = [=](const RobotStop& each) { return each.robot == robot; };
+    if (std::ranges::none_of(out.stops, is_this)) out.stops.push_back({.robot = robot});
   }
 }
 

@@ -90,6 +90,9 @@ void RunHistory::take(const clearance_msg_Separation& separation, std::int64_t l
   for (const auto& zone : std::span(separation.zones._buffer, separation.zones._length)) {
     piece.scaling = std::fmin(piece.scaling, zone.scaling);
   }
+  for (const auto& stop : std::span(separation.stops._buffer, separation.stops._length)) {
+    piece.scaling = std::fmin(piece.scaling, stop.scaling);
+  }
   run_.add(piece);
 }
 

@@ -1,4 +1,4 @@
-// Two arms, one of which makes a random motion and is told to stop, against every answer 'free'.
+// Random motions of one of two arms, with stops at random instants, against every answer 'free'.
 //
 // Oracle: a machine in time. It follows the cubics of its waypoints, by their own formula, until
 // its brakes act at some instant. Then it goes on along its path, or each joint by itself, within

@@ -14,6 +14,7 @@ const facts = () => page.evaluate(() => {
       [name(object), { place: matrix.elements.slice(12, 15), x: matrix.elements.slice(0, 3), colour: `#${material.color.getHexString()}` }]) : []),
     lines: lines.shown.map(({ pair, level }) => ({ pair: state.pairs[pair.pair].name, level })),
     row: [...row.cells].map(({ textContent }) => textContent), kind: row.className, title: row.title,
+    plotted: document.getElementById("scaling").hidden ? "" : document.getElementById("plot-scaling-now").textContent,
     good: css("--good"), alarm: css("--alarm"), query: new URLSearchParams(location.search).get("stops"), pairs: new URLSearchParams(location.search).get("pairs"),
   };
 });

@@ -64,10 +64,10 @@ export class CellState {
     if (pair) this.report.pairs.push(this.measured);
   }
 
-  // The least speed scaling of all zones; undefined where no zone has one.
+  // The least speed scaling of all zones and of robots that state how they stop; undefined where none has one.
   get scaling() {
-    const zones = this.separation?.zones ?? [];
-    return zones.length ? Math.min(...zones.map(({ scaling }) => scaling)) : undefined;
+    const limits = [...(this.separation?.zones ?? []), ...(this.separation?.stops ?? [])];
+    return limits.length ? Math.min(...limits.map(({ scaling }) => scaling)) : undefined;
   }
 
   // Notes which object of a pair is the cause: the one whose pose is older, or is unknown.

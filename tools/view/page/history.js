@@ -79,7 +79,7 @@ export class LiveHistory {
     return at;
   }
 
-  // `minimum` is undefined while it is unknown, `scaling` while no zone has one.
+  // `minimum` is undefined while it is unknown, `scaling` while nothing has one.
   take(report, minimum, scaling, ns) {
     if (!this.time) this.begin(report.pairs);
     const at = this.slotAt(ns * 1e-9);
