@@ -266,9 +266,17 @@ Admissible admissible(const Fault& fault) {
 
 std::int64_t recovers(const Fault& fault) {
   constexpr std::int64_t kUsual = 2 * kSecond;
-  if (fault.lie != Lie::kRivalFirst || !is_ball(fault.channel)) return kUsual;
-  const double farthest = fault.size + 2.0 * TrueMotion::kBallReach;
-  return std::max<std::int64_t>(kUsual, kAgeLimit + std::llround(1e9 * farthest / kBallSpeed));
+  const bool is_base = fault.channel == Channel::kOdom || fault.channel == Channel::kBase;
+  if (fault.lie == Lie::kRivalFirst && is_ball(fault.channel)) {
+    const double farthest = fault.size + 2.0 * TrueMotion::kBallReach;
+    return std::max<std::int64_t>(kUsual, kAgeLimit + std::llround(1e9 * farthest / kBallSpeed));
+  }
+  if (fault.lie == Lie::kRivalWhileRefused && is_base) {
+    const double moved = 4.0 * TrueMotion::kBaseReach;
+    return std::max<std::int64_t>(kUsual,
+                                  fault.to - fault.from + std::llround(1e9 * moved / kBaseSpeed));
+  }
+  return kUsual;
 }
 
 Told told(const Fault& fault, std::int64_t t) {

@@ -117,6 +117,9 @@ inline constexpr std::int64_t kOwnerStarts = 300 * kMs;
 // up after one. A ball is then unknown until it can have got, at the stated speed, from the rival's
 // last pose to that of its owner, and for an age limit more. The two poses are apart by the rival's
 // offset and the true motion meanwhile, which is at most twice kBallReach.
+// The coordinates of a base are judged one by one. A leap that is refused may be short in one of
+// them, which the base can have reached at the end of the lie. It can be back after the same time,
+// and longer by the true motion until then and since: four times kBaseReach.
 [[nodiscard]] std::int64_t recovers(const Fault& fault);
 
 // The changes that the owner of a channel makes to the truth at an instant.

@@ -53,6 +53,8 @@ class TrueMotion {
   // No point of a ball is farther from the middle of its orbit: the largest radius of an orbit, and
   // the place of the sphere in the ball's frame with its radius, m.
   static constexpr double kBallReach = 1.1 + 0.15 + 0.1;
+  // No coordinate of the base in the world is larger than this, m.
+  static constexpr double kBaseReach = 0.05 + 0.3 + 0.03 * 0.3;
 
  private:
   struct Orbit {
