@@ -15,6 +15,7 @@
 #include "config/cell/dds_reader.hpp"
 #include "config/cell/error_reader.hpp"
 #include "config/cell/link_margins.hpp"
+#include "config/cell/measured_steps.hpp"
 #include "config/cell/object_reader.hpp"
 #include "config/cell/pair_reader.hpp"
 #include "config/cell/partner_reader.hpp"
@@ -75,9 +76,8 @@ class CellReader {
   std::optional<Units> read_units(const YamlNode& node);
   void read_timing(MapReader& map, const Quantities& quantities, Scene& scene);
   void read_objects_and_pairs(MapReader& map, const Quantities& quantities, Cell& cell);
-  void refuse_unknown_stops(const YamlNode* zones_node, const RobotList& robots,
-                            const ObjectList& list, const PairList& pairs,
-                            const std::vector<Zone>& zones);
+  void settle_stops(const YamlNode* zones_node, RobotList& robots, const ObjectList& list,
+                    const PairList& pairs, const std::vector<Zone>& zones);
   void publish_open(RobotList& robots, const ObjectList& list, PairList& pairs,
                     const std::vector<Zone>& zones);
   void refuse_frames_without_a_world(const YamlNode& root, const Cell& cell);
@@ -138,12 +138,12 @@ void CellReader::read_timing(MapReader& map, const Quantities& quantities, Scene
   }
 }
 
-void CellReader::refuse_unknown_stops(const YamlNode* zones_node, const RobotList& robots,
-                                      const ObjectList& list, const PairList& pairs,
-                                      const std::vector<Zone>& zones) {
+void CellReader::settle_stops(const YamlNode* zones_node, RobotList& robots, const ObjectList& list,
+                              const PairList& pairs, const std::vector<Zone>& zones) {
   if (!diagnostics_.empty()) return;
   const StoppingRobots stopping(robots.robots, list.objects);
   refuse_unbounded_motion(stopping, robots, list, diagnostics_);
+  use_carried_loads(list, robots, diagnostics_);
   if (zones_node != nullptr)
     refuse_zones_without_stops(*zones_node, stopping, zones, pairs.pairs, diagnostics_);
 }
@@ -217,7 +217,7 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
     cell.scene.contacts =
         read_contacts(*contacts_node, list, cell.scene.zones, group_index, quantities, pairs);
   }
-  refuse_unknown_stops(zones_node, robots, list, pairs, cell.scene.zones);
+  settle_stops(zones_node, robots, list, pairs, cell.scene.zones);
   publish_open(robots, list, pairs, cell.scene.zones);
   const bool is_complete = pairs.complete && list.names_known;
   if (shares_ != nullptr && is_complete) {

@@ -162,6 +162,7 @@ void JointStopReader::read_joint(const YamlNode& node, StoppedJoint& joint) {
   map.refuse_unknown_keys();
   if (acceleration != nullptr) joint.acceleration = read_rate(*acceleration, joint, kAcceleration);
   const int stops = (points != nullptr) + (deceleration != nullptr) + (time != nullptr);
+  if (stops > 0) joint.by_step.clear();
   if (stops > 1 || (stops == 0 && acceleration == nullptr)) {
     diagnostics_.add(node, fmt::format("found {} stops of '{}'; expected one of points, "
                                        "deceleration and time_ms",

@@ -46,6 +46,8 @@ void read_input_limits(MapReader& map, const Quantities& quantities, ObjectDefau
 
 // Reads one object of the list. A value that cannot be read is reported and keeps its default, so
 // that one run reports every mistake.
+constexpr Range kMasses{.least = 0.0, .most = 1e6};  // kg
+
 class ObjectReader {
  public:
   ObjectReader(const ObjectDefaults& defaults, const ObjectTemplates& templates,
@@ -95,6 +97,8 @@ void ObjectReader::read(const YamlNode& node, ObjectList& list) {
   list.names_known = list.names_known && name.has_value();
   const YamlNode* fixed = map.optional("fixed");
   if (fixed != nullptr) object.fixed = read_flag(*fixed, diagnostics_).value_or(false);
+  if (const YamlNode* mass = map.optional("mass"))
+    object.mass = read_number(*mass, kMasses, "a mass in kg", diagnostics_).value_or(kInfinity);
   if (const YamlNode* absent = map.optional("absent"))
     object.absent = read_flag(*absent, diagnostics_).value_or(false);
   const YamlNode* attached = map.optional("attached");

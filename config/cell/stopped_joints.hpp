@@ -19,6 +19,7 @@ struct StoppedJoint {
   double full_speed = 0.0;                                  // per second; infinite: not stated
   double urdf_acceleration = 0.0, urdf_deceleration = 0.0;  // per s2; infinite: not stated
   std::optional<JointStop> stop = {};
+  std::vector<JointStop> by_step = {};  // of a table; empty: `stop` counts for each of its steps
   std::optional<double> acceleration = {};  // per s2
 
   [[nodiscard]] const char* unit() const noexcept { return turns ? "rad" : "m"; }

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "config/cell/joint_stop_reader.hpp"
+#include "config/cell/measured_steps.hpp"
 #include "config/cell/stop_steps.hpp"
 #include "config/cell/stop_table.hpp"
 #include "config/cell/stopped_joints.hpp"
@@ -23,7 +24,8 @@ namespace {
 
 // A percentage up to 1 is probably a share.
 constexpr Range kPercents{.least = 1.0, .most = 1000.0, .above_least = true};
-constexpr Range kReactions{.least = 0.0, .most = 60e3};  // ms
+constexpr Range kFullLoads{.least = 0.01, .most = 1e6}, kMasses{.least = 0.0, .most = 1e6};  // kg
+constexpr Range kReactions{.least = 0.0, .most = 60e3};                                      // ms
 
 class StoppingReader {
  public:
@@ -33,6 +35,7 @@ class StoppingReader {
         quantities_(quantities),
         diagnostics_(quantities.diagnostics()),
         revision_(revision),
+        variables_(variables),
         robot_(robot),
         joints_(stopped_joints(robot, variables)) {}
 
@@ -40,26 +43,31 @@ class StoppingReader {
 
  private:
   void read_conditions(MapReader& map);
-  std::optional<double> read_share(MapReader& map, const char* key);
+  std::optional<double> read_share(const YamlNode* node, const char* key);
+  void read_load(const YamlNode& node);
+  void read_extension(const YamlNode& node);
   void read_table(const YamlNode& node);
   void read_csv(const YamlNode& node);
   void read_inline(const YamlNode& node);
   // Returns the first mistake.
   std::optional<StopMistake> use_rows(std::vector<StopRow> rows);
+  std::optional<StopMistake> use_steps(int place,
+                                       const std::vector<std::vector<StopRow>>& of_joint);
   void keep(const YamlNode& node);
 
   const std::filesystem::path& cell_;
   const Quantities& quantities_;
   Diagnostics& diagnostics_;
   Revision& revision_;
+  std::span<const JointVariable> variables_;
   Robot& robot_;
   StoppedJoints joints_;
   StopConditions conditions_;
+  std::vector<StopStep> steps_;
 };
 
 // Nothing: 'worst', or the key is not there.
-std::optional<double> StoppingReader::read_share(MapReader& map, const char* key) {
-  const YamlNode* node = map.optional(key);
+std::optional<double> StoppingReader::read_share(const YamlNode* node, const char* key) {
   if (node == nullptr || node->text == "worst") return std::nullopt;
   if (node->text == "0") return 0.0;
   const auto percent =
@@ -68,8 +76,39 @@ std::optional<double> StoppingReader::read_share(MapReader& map, const char* key
   return percent ? std::optional(0.01 * *percent) : std::nullopt;
 }
 
-// The load of a payload and the extension of a posture are not computed: unless the cell states
-// them, the worst of the table counts.
+// {full: kg, tool: kg}
+void StoppingReader::read_load(const YamlNode& node) {
+  MapReader map(node, "a load by masses", diagnostics_);
+  CarriedLoad& load = robot_.stopping.load;
+  if (const YamlNode* full = map.required("full"))
+    load.full =
+        read_number(*full, kFullLoads, "the largest load in kg", diagnostics_).value_or(1.0);
+  if (const YamlNode* tool = map.optional("tool"))
+    load.tool =
+        read_number(*tool, kMasses, "the mass of the tool in kg", diagnostics_).value_or(0.0);
+  map.refuse_unknown_keys();
+}
+
+// {link: NAME, reach: length}
+void StoppingReader::read_extension(const YamlNode& node) {
+  MapReader map(node, "an extension by postures", diagnostics_);
+  const YamlNode* link = map.required("link");
+  const YamlNode* reach = map.required("reach");
+  map.refuse_unknown_keys();
+  if (link == nullptr || reach == nullptr) return;
+  const auto name = read_name(*link, "a link's name", diagnostics_);
+  const auto length = quantities_.length(*reach, "the reach that the maker calls 100 %", kPositive);
+  if (!name || !length) return;
+  const auto extension = measured_extension(robot_, variables_, *name);
+  if (const auto* fault = std::get_if<std::string>(&extension)) {
+    diagnostics_.add(*link, *fault);
+    return;
+  }
+  robot_.stopping.extension = std::get<Extension>(extension);
+  robot_.stopping.extension.reach = *length;
+}
+
+// The worst of the table counts, unless the cell states a load and an extension or how they follow.
 void StoppingReader::read_conditions(MapReader& map) {
   RobotStops& stops = robot_.stopping;
   if (const YamlNode* category = map.optional("category")) {
@@ -92,7 +131,20 @@ void StoppingReader::read_conditions(MapReader& map) {
                        "'left', or category 1 or 2");
     }
   }
-  conditions_ = {stops.category, read_share(map, "load"), read_share(map, "extension")};
+  conditions_.category = stops.category;
+  const auto is_map = [](const YamlNode* node) {
+    return node != nullptr && node->kind == YamlNode::Kind::kMap;
+  };
+  const YamlNode* load = map.optional("load");
+  const YamlNode* extension = map.optional("extension");
+  if (is_map(load))
+    read_load(*load);
+  else
+    conditions_.load = read_share(load, "load");
+  if (is_map(extension))
+    read_extension(*extension);
+  else
+    conditions_.extension = read_share(extension, "extension");
 }
 
 std::optional<StopMistake> StoppingReader::use_rows(std::vector<StopRow> rows) {
@@ -122,14 +174,34 @@ std::optional<StopMistake> StoppingReader::use_rows(std::vector<StopRow> rows) {
                        fmt::format("found no row of category {}; expected some, or another "
                                    "`category` of the robot",
                                    conditions_.category)};
+  return use_steps(rows.front().place, of_joint);
+}
+
+// A joint has a stop for each step of what is measured. The last one is the worst of all.
+std::optional<StopMistake> StoppingReader::use_steps(
+    int place, const std::vector<std::vector<StopRow>>& of_joint) {
+  const RobotStops& stops = robot_.stopping;
+  const bool is_extension_measured = stops.extension.reach > 0.0;
+  const auto steps =
+      measured_steps(of_joint, conditions_, stops.load.full > 0.0, is_extension_measured);
+  if (is_extension_measured && *steps.back().extension < 1.0)
+    return StopMistake{place, fmt::format("found extensions up to {:g} %; expected 100 % among "
+                                          "them, since postures choose from them",
+                                          100.0 * *steps.back().extension)};
   for (std::size_t i = 0; i < of_joint.size(); ++i) {
-    auto counted = counted_rows(std::move(of_joint[i]), conditions_);
-    if (auto* mistake = std::get_if<StopMistake>(&counted)) return std::move(*mistake);
-    std::vector<StopPoint> points;
-    for (const StopRow& row : std::get<std::vector<StopRow>>(counted))
-      points.push_back({row.speed * joints_.all[i].full_speed, row.distance, row.time});
-    if (!points.empty()) joints_.all[i].stop = JointStop::by_table(std::move(points));
+    StoppedJoint& joint = joints_.all[i];
+    for (const StopConditions& step : steps) {
+      auto counted = counted_rows(of_joint[i], step);
+      if (auto* mistake = std::get_if<StopMistake>(&counted)) return std::move(*mistake);
+      std::vector<StopPoint> points;
+      for (const StopRow& row : std::get<std::vector<StopRow>>(counted))
+        points.push_back({row.speed * joint.full_speed, row.distance, row.time});
+      if (!points.empty()) joint.by_step.push_back(JointStop::by_table(std::move(points)));
+    }
+    if (!joint.by_step.empty()) joint.stop = joint.by_step.back();
   }
+  for (const StopConditions& step : steps)
+    steps_.push_back({step.load.value_or(1.0), step.extension.value_or(1.0), {}});
   return std::nullopt;
 }
 
@@ -217,8 +289,13 @@ void StoppingReader::keep(const YamlNode& node) {
         std::ranges::find(joints_.all, robot_.joints[i].variable, &StoppedJoint::variable);
     if (joint == joints_.all.end()) continue;
     stops.joints[i] = *joint->stop;
+    for (std::size_t step = 0; step < steps_.size(); ++step) {
+      steps_[step].joints.resize(robot_.joints.size());
+      steps_[step].joints[i] = joint->by_step.empty() ? *joint->stop : joint->by_step[step];
+    }
     if (joint->acceleration) stops.max_accelerations[i] = *joint->acceleration;
   }
+  if (stops.load.full > 0.0 || stops.extension.reach > 0.0) stops.steps = std::move(steps_);
 }
 
 void StoppingReader::read(const YamlNode& node) {
@@ -237,9 +314,11 @@ void StoppingReader::read(const YamlNode& node) {
   }
   if (joints_.all.empty() && map.is_map())
     diagnostics_.add(node, "found 'stopping' of a robot without joints; expected some that move");
-  for (const auto& [share, key] :
-       {std::pair(conditions_.load, "load"), {conditions_.extension, "extension"}}) {
-    if (share && table == nullptr)
+  const RobotStops& stops = robot_.stopping;
+  for (const auto& [chooses, key] :
+       {std::pair(conditions_.load || stops.load.full > 0.0, "load"),
+        {conditions_.extension || stops.extension.reach > 0.0, "extension"}}) {
+    if (chooses && table == nullptr)
       diagnostics_.add(node, fmt::format("found '{}' without 'table', whose rows it chooses; "
                                          "expected both",
                                          key));

@@ -59,6 +59,7 @@ struct AttachedCollisionObject {
   std::string link_name = {};
   CollisionObject object = {};
   std::vector<std::string> touch_links = {};
+  double weight = 0.0;  // kg; 0: not known
 };
 
 // A square matrix: entry_values[i][j] tells whether i and j may touch. For pairs outside of it the

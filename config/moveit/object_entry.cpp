@@ -306,6 +306,8 @@ YamlNode attached_entry(const std::string& name, const std::string& group,
   set(attached, "to", text_node(attachment.to));
   set(attached, "pose", pose_node(attachment.carrier_from_object, unit));
   set(entry, "attached", std::move(attached));
+  if (attachment.weight > 0.0 && std::isfinite(attachment.weight))
+    set(entry, "mass", number_node(attachment.weight));
   set(entry, "parts", std::move(parts));
   add_touch(attachment.touch, entry);
   return entry;

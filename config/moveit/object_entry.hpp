@@ -49,6 +49,7 @@ struct Attachment {
   std::string to;
   Pose carrier_from_object;
   std::vector<std::string> touch;
+  double weight = 0.0;  // kg; 0: not known
 };
 [[nodiscard]] YamlNode attached_entry(const std::string& name, const std::string& group,
                                       const Attachment& attachment, YamlNode parts,

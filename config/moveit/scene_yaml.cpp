@@ -251,6 +251,7 @@ AttachedCollisionObject read(const YamlNode& node, const AttachedCollisionObject
   get(node, "link_name", kType, attached.link_name);
   get(node, "object", kType, attached.object);
   get(node, "touch_links", kType, attached.touch_links);
+  get(node, "weight", kType, attached.weight);
   return attached;
 }
 

@@ -55,6 +55,7 @@ struct Object {
   double mesh_error = 0.0;    // m: no point of its parts is farther from its meshes than this
   double shape_error = 0.0;   // stated, m: no point of the true body is farther from its parts
   RestingOn resting_on = {};  // of a fixed object that is attached to another
+  double mass = kInfinity;    // kg; infinity: not stated
   bool may_jump = false;      // its poses may jump, as a simulation's do
   bool absent = false;        // known not to be there when the monitor starts (Monitor::set_absent)
   bool is_read = true;        // false: no pair of this share of a cell depends on it (select_share)

@@ -43,6 +43,27 @@ class JointStop {
 // IEC 60204-1: category 0 takes the power away, 1 brakes and then takes it away, 2 keeps it.
 inline constexpr int kStopCategories = 3;
 
+// The stops that a table prints up to a load and an extension, which are shares of the largest
+// ones. A step is no better than any lower one.
+struct StopStep {
+  double load = 1.0, extension = 1.0;
+  std::vector<JointStop> joints;  // as RobotStops::joints
+};
+
+// How far an arm is extended: the distance of a link's origin from the axis of a joint, m.
+struct Extension {
+  std::uint32_t joint = 0, link = 0;  // indices into the robot's; the joint turns, below the link
+  double reach = 0.0;                 // m: the maker's 100 %; 0: the worst extension counts
+  // By joint of the robot: the distance changes by no more per rad, or per m of one that slides.
+  std::vector<double> levers;
+};
+
+// The load of an arm by the masses of what is attached to it, kg.
+struct CarriedLoad {
+  double full = 0.0;  // the maker's 100 %; 0: the cell states the load, or the worst one counts
+  double tool = 0.0;  // what the arm always carries
+};
+
 struct RobotStops {
   int category = 1;
   double reaction = 0.0;    // s: from a report until the brakes act
@@ -51,6 +72,10 @@ struct RobotStops {
   // Joints that do not move, and the floating joint of a base on tf, have no stop. Empty: nothing
   // is stated.
   std::vector<JointStop> joints;
+  // The steps of the extension, ascending, whose last one is `joints`. Empty: it is not measured.
+  std::vector<StopStep> steps;
+  Extension extension;
+  CarriedLoad load;
   // By joint, rad/s2 or m/s2: until the brakes act, and while the path is kept, the velocity
   // changes by no more than this per second. Infinity: not stated.
   std::vector<double> max_accelerations;

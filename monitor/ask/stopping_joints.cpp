@@ -8,17 +8,23 @@
 #include "monitor/inputs/elapsed.hpp"
 
 namespace clearance {
+namespace {
+
+constexpr double kMeasured = 1e-9;  // the largest relative error of an extension
+
+}  // namespace
 
 StoppingJoints::StoppingJoints(const Scene& scene, std::uint32_t robot, JointTrajectory& motion)
-    : stops_(scene.robots[robot].stopping), robot_(robot), period_(1.0 / scene.rate_hz) {
-  const Robot& of = scene.robots[robot];
-  for (std::size_t i = 0; i < of.joints.size(); ++i) {
-    const RobotJoint& joint = of.joints[i];
+    : of_(scene.robots[robot]), stops_(of_.stopping), robot_(robot), period_(1.0 / scene.rate_hz) {
+  for (std::size_t i = 0; i < of_.joints.size(); ++i) {
+    const RobotJoint& joint = of_.joints[i];
     if (variables_of(joint.type) != 1) continue;
     const JointVariable& variable = scene.variables[joint.variable];
     if (variable.name != joint.name) continue;  // it mimics another
-    Joint added{
-        .variable = joint.variable, .stop = &stops_.joints[i], .full_speed = variable.max_speed};
+    Joint added{.variable = joint.variable,
+                .index = i,
+                .stop = &stops_.joints[i],
+                .full_speed = variable.max_speed};
     if (!stops_.max_accelerations.empty()) added.acceleration = stops_.max_accelerations[i];
     if (joint.type == JointType::kPrismatic) {
       added.lower = variable.lower;
@@ -47,6 +53,32 @@ void StoppingJoints::read(const Inputs& inputs) noexcept {
     const bool gains = joint.acceleration < kInfinity && !joint.any_direction;
     joint.gained = gains ? rounded_up(joint.acceleration * reaction()) : 0.0;
     may_turn_ = may_turn_ || joint.gained > 0.0 || joint.any_direction;
+  }
+  if (is_usable_ && !stops_.steps.empty()) choose_step(inputs);
+}
+
+// The distance of the link from the axis, m.
+double StoppingJoints::extension(const Inputs& inputs) const noexcept {
+  const auto links = inputs.robots.links(robot_);
+  const Extension& of = stops_.extension;
+  const RobotJoint& joint = of_.joints[of.joint];
+  const LinkState& parent = links[joint.parent];
+  const LinkState& link = links[of.link];
+  if (!parent.known || !link.known) return kInfinity;
+  const Pose at = compose(parent.pose, joint.parent_from_joint);
+  return (link.pose.position - at.position).cross(at.orientation * joint.axis).norm();
+}
+
+// The lowest step counts that the posture does not leave in a stop of this step. The highest one
+// has all extensions.
+void StoppingJoints::choose_step(const Inputs& inputs) noexcept {
+  const double now = extension(inputs);
+  for (const StopStep& step : stops_.steps) {
+    for (Joint& joint : joints_) joint.stop = &step.joints[joint.index];
+    double farthest = now;
+    for (const Joint& joint : joints_)
+      farthest += swept(covered(joint), stops_.extension.levers[joint.index]);
+    if ((1.0 + kMeasured) * farthest <= step.extension * stops_.extension.reach) return;
   }
 }
 

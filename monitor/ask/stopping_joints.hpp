@@ -51,7 +51,8 @@ class StoppingJoints {
   static constexpr std::size_t kRows = 2;  // waypoints of a motion
   struct Joint {
     std::uint32_t variable = 0;
-    const JointStop* stop = nullptr;
+    std::size_t index = 0;                         // into Robot::joints
+    const JointStop* stop = nullptr;               // of the step that counts
     double acceleration = kInfinity;               // rad/s2 or m/s2
     double lower = -kInfinity, upper = kInfinity;  // that a sliding joint does not leave, m
     double full_speed = kInfinity;
@@ -66,6 +67,8 @@ class StoppingJoints {
   };
   [[nodiscard]] const Joint* find(std::uint32_t variable) const noexcept;
   void read(const Inputs& inputs, Joint& joint) noexcept;
+  void choose_step(const Inputs& inputs) noexcept;
+  [[nodiscard]] double extension(const Inputs& inputs) const noexcept;
   [[nodiscard]] double covered(const Joint& joint) const noexcept;
   [[nodiscard]] double reaction() const noexcept;
   [[nodiscard]] double longest_time(double scaling) const noexcept;
@@ -73,6 +76,7 @@ class StoppingJoints {
   [[nodiscard]] double at_most_in_proportion(double scaling) const noexcept;
   [[nodiscard]] double length_of_line(double scaling) const noexcept;
 
+  const Robot& of_;
   const RobotStops& stops_;
   std::uint32_t robot_;
   double period_;  // s: until the next report

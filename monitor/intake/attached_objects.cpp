@@ -63,7 +63,7 @@ void MessageTranslator::attach_with_shapes(const AttachedCollisionObject& messag
   object.carrier = message.link_name;
   object.pose = compose(inverse(link), compose(frame, body.frame_from_object));
   object.entry = attached_entry(message.object.id, scene_.group,
-                                {message.link_name, object.pose, touch_of(message)},
+                                {message.link_name, object.pose, touch_of(message), message.weight},
                                 std::move(body.parts), scene_.unit);
   keep_subframes(message.object, object_path);
   put(message.object.id, std::move(object));

@@ -77,7 +77,8 @@ CollisionObject from_wire(const moveit_msgs_msg_dds__CollisionObject_& message) 
 }
 
 AttachedCollisionObject from_wire(const moveit_msgs_msg_dds__AttachedCollisionObject_& message) {
-  return {text(message.link_name), from_wire(message.object), names(message.touch_links)};
+  return {text(message.link_name), from_wire(message.object), names(message.touch_links),
+          message.weight};
 }
 
 PlanningScene from_wire(const moveit_msgs_msg_dds__PlanningScene_& message) {

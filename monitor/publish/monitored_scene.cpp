@@ -92,6 +92,7 @@ void SceneWriter::write_attached(const Robot& robot) {
   for (const std::uint32_t link : links_) {
     if (!is_watched(link, object)) attached.touch_links.push_back(scene_.objects[link].name);
   }
+  if (scene_.objects[object].mass < kInfinity) attached.weight = scene_.objects[object].mass;
   message_.attached.push_back(std::move(attached));
   bodies_.push_back(object);
 }
@@ -194,6 +195,7 @@ void put(const AttachedCollisionObject& from, moveit_msgs_msg_dds__AttachedColli
   put(from.object, to.object);
   put_all(from.touch_links, to.touch_links);
   put(std::string(), to.detach_posture.header.frame_id);
+  to.weight = from.weight;
 }
 
 }  // namespace

@@ -50,6 +50,17 @@ void each_joint(const Scene& scene, Visit&& visit) {
   }
 }
 
+// Returns the steps of the extension, if postures choose among them.
+std::string steps_of(const RobotStops& stops) {
+  std::vector<std::string> steps;
+  for (const StopStep& step : stops.steps)
+    steps.push_back(fmt::format("{:g}", 100.0 * step.extension));
+  return steps.empty() ? ""
+                       : fmt::format("\n  rows up to {} % of the extension, by the posture; here "
+                                     "those of the last step",
+                                     fmt::join(steps, ", "));
+}
+
 std::vector<double> speeds_of(const ShownJoint& shown) {
   std::vector<double> speeds;
   for (const StopPoint& point : shown.stop.points()) speeds.push_back(point.speed);
@@ -66,10 +77,10 @@ std::string stop_table(const Scene& scene) {
   each_joint(scene, [&](const Robot& robot, const ShownJoint& shown) {
     if (std::exchange(last, &robot) != &robot) {
       text += fmt::format(
-          "{}: category {}, brakes act after {:.0f} ms, the path is {}\n{:<24} {:>14} {:>14} "
+          "{}: category {}, brakes act after {:.0f} ms, the path is {}{}\n{:<24} {:>14} {:>14} "
           "{:>9}\n",
           robot.name, robot.stopping.category, 1e3 * robot.stopping.reaction,
-          robot.stopping.keeps_path ? "kept" : "left", "  joint", "from, per s", "goes on for",
+          robot.stopping.keeps_path ? "kept" : "left", steps_of(robot.stopping), "  joint", "from, per s", "goes on for",
           "in, ms");
     }
     for (const double speed : speeds_of(shown)) {

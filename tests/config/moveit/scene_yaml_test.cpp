@@ -223,7 +223,7 @@ TEST_F(YamlScenes, HaveWhatIsAttachedAndThePairsThatTheMatrixAllows) {
   std::string text = kYaml;
   text.replace(
       text.find("[]\n  is_diff"), 2,
-      "[{link_name: hand, touch_links: [rock], object: {header: {frame_id: hand}, id: tool, "
+      "[{link_name: hand, weight: 2.5, touch_links: [rock], object: {header: {frame_id: hand}, id: tool, "
       "pose: {position: {z: 0.2}, orientation: {w: 1.0}}, "
       "primitives: [{type: 2, dimensions: [0.05]}]}}]");
   text.replace(text.find("robot_model_name:"), 0,
@@ -235,6 +235,7 @@ TEST_F(YamlScenes, HaveWhatIsAttachedAndThePairsThatTheMatrixAllows) {
   EXPECT_EQ(scene.objects[4].name, "tool");
   EXPECT_FALSE(scene.objects[4].fixed);
   EXPECT_EQ(scene.objects[4].parts[0].shape.radius, 0.05);
+  EXPECT_EQ(scene.objects[4].mass, 2.5);
   ASSERT_EQ(scene.robots.size(), 1u);
   EXPECT_TRUE(scene.robots[0].is_attached);
   EXPECT_EQ(scene.robots[0].base.kind, RobotBase::Kind::kObject);

@@ -51,6 +51,11 @@ inline bool moves(const Scene& scene, const Robot& robot, std::size_t joint) {
   return variables_of(of.type) == 1 && scene.variables[of.variable].name == of.name;
 }
 
+// The object of a link; `link` is its name without the prefix.
+inline std::uint32_t object_of(const Robot& robot, const std::string& link) {
+  return std::ranges::find(robot.links, robot.prefix + link, &RobotLink::name)->object;
+}
+
 // The share of its distance that a joint has gone after a time `t` of a stop that takes `time`, s.
 // A power of 1 keeps the speed, and of 2 the deceleration.
 inline double share_gone(double t, double time, double power) {
@@ -76,14 +81,17 @@ inline constexpr double kPersonMargin = 0.05;  // m, between the left arm and th
 struct DrawnArms {
   Scene scene;
   std::vector<std::vector<MachineStop>> machines;  // by robot and joint
+  std::vector<double> reaches;                     // PrintedStops::reach(), by robot
 };
 
 // `reaction`: draws that of an arm, s. `turns`: draws the accelerations of an arm; infinity: none
 // is stated.
 template <class Reaction, class Turns>
-DrawnArms drawn_arms(Random& random, const Reaction& reaction, const Turns& turns) {
-  const PrintedStops left(reaction(), random), right(reaction(), random);
+DrawnArms drawn_arms(Random& random, const Reaction& reaction, const Turns& turns,
+                     bool measures = false) {
+  const PrintedStops left(reaction(), random, measures), right(reaction(), random, measures);
   DrawnArms arms;
+  arms.reaches = {left.reach(), right.reach()};
   Scene& scene = arms.scene =
       arms_that_stop(left.text(), right.text(),
                      "  - {name: walks, between: [left, person], stops: {margin: 0.05}}\n");
@@ -99,17 +107,20 @@ DrawnArms drawn_arms(Random& random, const Reaction& reaction, const Turns& turn
   for (const Robot& robot : scene.robots) {
     auto rows = (arms.machines.empty() ? left : right).rows().begin();
     auto& machine = arms.machines.emplace_back();
-    for (std::size_t j = 0; j < robot.joints.size(); ++j)
-      machine.emplace_back(robot.stopping.joints[j],
-                           moves(scene, robot, j) ? *rows++ : std::vector<StopPoint>());
+    for (std::size_t j = 0; j < robot.joints.size(); ++j) {
+      std::vector<JointStop> stated;
+      for (const StopStep& step : robot.stopping.steps) stated.push_back(step.joints[j]);
+      if (stated.empty()) stated.push_back(robot.stopping.joints[j]);
+      machine.emplace_back(stated, moves(scene, robot, j) ? *rows++ : PrintedRows());
+    }
   }
   return arms;
 }
-inline DrawnArms drawn_arms(std::uint64_t seed) {
+inline DrawnArms drawn_arms(std::uint64_t seed, bool measures = false) {
   Random random(seed);
   return drawn_arms(
       random, [&] { return 1e-3 * random.integer(0, 100); },
-      [&] { return random.chance(0.4) ? random.uniform(0.0, 3.0) : kInfinity; });
+      [&] { return random.chance(0.4) ? random.uniform(0.0, 3.0) : kInfinity; }, measures);
 }
 inline Scene drawn_scene(std::uint64_t seed) { return drawn_arms(seed).scene; }
 

@@ -282,15 +282,19 @@ class StoppingMachine {
     robot.share = share;
     robot.brakes = shape() * latest;
     robot.slows = shape() * robot.brakes;
-    double in_proportion = 0.0, longest = 0.0;
     for (const std::uint32_t v : robot.joints) {
       Joint& joint = joints_[v];
       const bool may_turn = joint.most < kInfinity && joint.is_told;
       joint.turns = may_turn ? random_.sign() * shape() * joint.most : 0.0;
       joint.braked = joint.velocity + joint.turns * own_time(robot, joint, robot.brakes);
+    }
+    const std::size_t step = step_of(robot, of);
+    double in_proportion = 0.0, longest = 0.0;
+    for (const std::uint32_t v : robot.joints) {
+      Joint& joint = joints_[v];
       const double speed = std::abs(share * joint.braked);
-      joint.distance = joint.stop->distance(speed);
-      joint.time = joint.stop->time(speed);
+      joint.distance = joint.stop->distance(speed, step);
+      joint.time = joint.stop->time(speed, step);
       if (speed > 0.0) in_proportion = std::max(in_proportion, joint.distance / speed);
       longest = std::max(longest, joint.time);
     }
@@ -312,6 +316,20 @@ class StoppingMachine {
       }
       robot.stands = std::max(robot.stands, robot.brakes + joint.time);
     }
+  }
+  // The step of the extension that the posture has when the brakes act: how far the hand is from
+  // the vertical line through the shoulder.
+  [[nodiscard]] std::size_t step_of(const Robot& robot, const clearance::Robot& of) {
+    const double reach = arms_.reaches[static_cast<std::size_t>(&robot - robots_.data())];
+    if (reach == 0.0) return 0;
+    at_.assign(joints_.size(), 0.0);
+    for (const std::uint32_t v : robot.joints)
+      at_[v] = position(robot, of, joints_[v], robot.brakes);
+    const std::vector<Pose> places =
+        true_poses(arms_.scene, at_, std::vector<Pose>(arms_.scene.objects.size(), place_), exact_);
+    const Vec3 arm =
+        places[object_of(of, "hand")].position - places[object_of(of, "shoulder")].position;
+    return arm.head<2>().norm() > 0.5 * reach ? 1 : 0;
   }
   // How much of its motion a joint has made since its stamp, as a time at the robot's full speed.
   static double own_time(const Robot& robot, const Joint& joint, double t) {

@@ -33,7 +33,7 @@ void obey(const Scene& scene, StoppingMachine& machine, const Report& report, Ju
 // Calls stop(scene, machine, report, judged) in postures of a cell.
 template <class Stop>
 Judged judge_cell(std::uint64_t seed, const Stop& stop, double late = 0.0) {
-  const test::DrawnArms arms = test::drawn_arms(seed);
+  const test::DrawnArms arms = test::drawn_arms(seed, true);
   StoppingMachine machine(arms, seed, motion(), late);
   Judged judged;
   for (int i = 0; i < kPostures; ++i) {

@@ -20,12 +20,14 @@ TEST_F(MoveItCell, ThePublishedSceneGivesTheSameSceneToAnotherCell) {
   attached.link_name = "hand";
   attached.object = box_object("held", test::at(2.0, 0.3, 0.0));
   attached.touch_links = {"finger"};
+  attached.weight = 2.5;
   send(attached);
   const Cell first = cell_;
   const PlanningScene published = from_wire(*to_wire(monitored_scene(first)));
   EXPECT_FALSE(published.is_diff);
   ASSERT_EQ(published.collision_objects.size(), 2u);  // the table as well, and no cart
   ASSERT_EQ(published.attached.size(), 1u);
+  EXPECT_EQ(published.attached[0].weight, 2.5);
 
   send(PlanningScene{});
   ASSERT_EQ(object("shelf"), nullptr);

@@ -72,7 +72,7 @@ inline void put(RosCdr& cdr, const AttachedCollisionObject& attached) {
   // detach_posture: no names, one point with one position
   cdr.header(0, "").number(std::uint32_t{0}).number(std::uint32_t{1});
   cdr.numbers({0.04}).numbers({}).numbers({}).numbers({}).number(std::int32_t{1});
-  cdr.number(std::uint32_t{0}).number(2.5);  // and the weight
+  cdr.number(std::uint32_t{0}).number(attached.weight);
 }
 inline void put(RosCdr& cdr, const FixedFrame& frame) {
   cdr.header(0, frame.frame_id).text(frame.child_frame_id);
