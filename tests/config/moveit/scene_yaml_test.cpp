@@ -221,11 +221,11 @@ TEST_F(YamlScenes, AreRefusedByFieldAndLine) {
 // The hand is an object here; links carry likewise. The unit of the cell is mm.
 TEST_F(YamlScenes, HaveWhatIsAttachedAndThePairsThatTheMatrixAllows) {
   std::string text = kYaml;
-  text.replace(
-      text.find("[]\n  is_diff"), 2,
-      "[{link_name: hand, weight: 2.5, touch_links: [rock], object: {header: {frame_id: hand}, id: tool, "
-      "pose: {position: {z: 0.2}, orientation: {w: 1.0}}, "
-      "primitives: [{type: 2, dimensions: [0.05]}]}}]");
+  text.replace(text.find("[]\n  is_diff"), 2,
+               "[{link_name: hand, weight: 2.5, touch_links: [rock], object: {header: {frame_id: "
+               "hand}, id: tool, "
+               "pose: {position: {z: 0.2}, orientation: {w: 1.0}}, "
+               "primitives: [{type: 2, dimensions: [0.05]}]}}]");
   text.replace(text.find("robot_model_name:"), 0,
                "allowed_collision_matrix: {entry_names: [hand, ground, nothing], entry_values: "
                "[{enabled: [false, true, true]}, {enabled: [true, false, true]}, "

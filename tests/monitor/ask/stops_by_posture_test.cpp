@@ -1,4 +1,4 @@
-// Which rows of a stopping table count for a posture.
+// The rows of a stopping table that count for a posture.
 //
 // Oracle: dense samples of the line on which the robot stops, and how far its hand is then from the
 // vertical line through its shoulder.
