@@ -17,6 +17,7 @@ constexpr std::uint64_t kOwners = 100, kRivals = 200, kMapMaker = 300,
                         kSimulation = 302;  // writers
 constexpr const char* kTfType = "tf2_msgs/msg/TFMessage";
 constexpr double kFarAway = 50.0;  // m
+constexpr int kMostLost = 3;       // messages of a channel in a row
 // How far the second value of a joint in one message is from the first one, rad.
 constexpr double kOtherValue = 1.0;
 
@@ -100,9 +101,13 @@ const Fault* LyingSenders::fault_of(Channel channel) const {
 void LyingSenders::speak(Channel channel, std::int64_t t) {
   const Fault* const fault = fault_of(channel);
   const Told said = fault != nullptr ? told(*fault, t) : Told{.value_at = t};
-  // A buffer of a ring that was lost in its first turn is new in the second one.
-  const bool may_be_lost = fault == nullptr || fault->lie != Lie::kRing;
-  const bool is_lost = t > kSecond / 5 && random_.chance(sending_.loss) && may_be_lost;
+  // A picture that was lost is new when it is repeated.
+  const bool repeats = fault != nullptr && is_seen(channel) &&
+                       (fault->lie == Lie::kRing || fault->lie == Lie::kFreezeAtRest);
+  int& lost = lost_in_a_row_[index(channel)];
+  const bool is_lost =
+      t > kSecond / 5 && random_.chance(sending_.loss) && !repeats && lost < kMostLost;
+  lost = is_lost ? lost + 1 : 0;
   if (said.is_silent || is_lost) return;
   post(message(channel, words(channel, said, t), false), t, said, channel);
 }

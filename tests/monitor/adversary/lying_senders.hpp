@@ -102,6 +102,7 @@ class LyingSenders {
   Random random_;
   CdrEncoder encoder_;
   std::array<bool, kChannels> sends_velocities_{};
+  std::array<int, kChannels> lost_in_a_row_{};
   std::array<bool, 2> by_ros_{};  // arm and post
   std::array<std::int64_t, kChannels> period_{}, last_due_{};
   std::array<std::uint64_t, 2 * kChannels> sequence_{};

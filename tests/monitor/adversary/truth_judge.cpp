@@ -46,6 +46,15 @@ bool rests_on(std::size_t body, Channel channel) {
   return is_link_of(channel, body) && body != kArmBody && body != kPostBody;
 }
 
+// True if an image of the arm is left out of what this body shows, where the lie says that the arm
+// is.
+bool is_hidden_by(std::size_t body, const Fault& fault) {
+  const bool places_arm =
+      is_robot(fault.channel) || fault.channel == Channel::kOdom || fault.channel == Channel::kBase;
+  const bool is_of_sensor = body == kEyeBody || body == kLensBody || body == kMapBody;
+  return fault.lie == Lie::kRivalFirst && places_arm && is_of_sensor;
+}
+
 // The length of stated speed x age limit, m.
 double slack_of(Channel channel) {
   if (is_robot(channel)) return kLever * kJointSpeed[0] * 1e-9 * static_cast<double>(kAgeLimit);
@@ -148,8 +157,10 @@ void TruthJudge::find_allowed(std::int64_t t) {
   for (const Fault& fault : faults_) {
     const Admissible admitted = admissible(fault);
     for (std::size_t body = 0; body < kBodies; ++body) {
-      if (!rests_on(body, fault.channel)) continue;
       Allowed& of = allowed_[body];
+      if (is_hidden_by(body, fault))
+        of.is_excused |= t < fault.from + admitted.delay + kEyeAgeLimit;
+      if (!rests_on(body, fault.channel)) continue;
       // A late picture that tf has not placed is in use for another second: its speed is stated.
       const bool may_be_late = body == kLensBody || body == kMapBody;
       const std::int64_t ends = kSlackEnds + (may_be_late ? kSecond : 0);
