@@ -29,6 +29,7 @@
 #include "config/cell/share_reader.hpp"
 #include "config/cell/simulation_reader.hpp"
 #include "config/cell/stop_demands.hpp"
+#include "config/cell/timing_reader.hpp"
 #include "config/cell/zone_reader.hpp"
 #include "config/scene/refresh_share.hpp"
 #include "config/scene/revision.hpp"
@@ -43,13 +44,6 @@
 
 namespace clearance {
 namespace {
-
-// This limit keeps every derived count within its type.
-constexpr std::int64_t kMaxBudget = 1'000'000'000;
-// The slowest rate that a loop is tested with, and the fastest whose period is a useful tick.
-constexpr Range kRates{.least = 1.0, .most = 10'000.0};  // Hz
-// The range is from one tick at 1 kHz to some days.
-constexpr Range kRefreshes{.least = 1e-3, .most = 1e6};  // s
 
 void note_mesh_errors(ObjectList& list) {
   for (Object& object : list.objects) {
@@ -74,7 +68,6 @@ class CellReader {
 
  private:
   std::optional<Units> read_units(const YamlNode& node);
-  void read_timing(MapReader& map, const Quantities& quantities, Scene& scene);
   void read_objects_and_pairs(MapReader& map, const Quantities& quantities, Cell& cell);
   void settle_stops(const YamlNode* zones_node, RobotList& robots, const ObjectList& list,
                     const PairList& pairs, const std::vector<Zone>& zones);
@@ -91,8 +84,8 @@ class CellReader {
   ConvexShapes& known_;
   Diagnostics& diagnostics_;
   Revision& revision_;
-  const YamlNode* budget_ = nullptr;  // its place in the cell
-  const YamlNode* ros_ = nullptr;     // likewise, here and below
+  TimingPlaces timing_;
+  const YamlNode* ros_ = nullptr;  // likewise, here and below
   const YamlNode* shares_ = nullptr;
   const YamlNode* errors_ = nullptr;
 };
@@ -109,33 +102,6 @@ std::optional<Units> CellReader::read_units(const YamlNode& node) {
   if (angle_node != nullptr) angle = read_angle_unit(*angle_node, diagnostics_);
   if (!length || !angle) return std::nullopt;
   return Units{*length, *angle};
-}
-
-// Reads rate, budget and time limits; a key that the cell leaves out keeps the default of Scene.
-void CellReader::read_timing(MapReader& map, const Quantities& quantities, Scene& scene) {
-  if (const YamlNode* rate = map.optional("rate_hz")) {
-    scene.rate_hz =
-        read_number(*rate, kRates, "the rate in Hz", diagnostics_).value_or(scene.rate_hz);
-  }
-  budget_ = map.optional("budget");
-  if (budget_ != nullptr) {
-    const auto queries =
-        read_integer(*budget_, 1, kMaxBudget, "distance queries a tick", diagnostics_);
-    if (queries) scene.budget = static_cast<std::uint32_t>(*queries);
-  }
-  if (const YamlNode* refresh = map.optional("refresh_s")) {
-    scene.refresh_s = read_number(*refresh, kRefreshes,
-                                  "seconds within which every pair is refreshed", diagnostics_)
-                          .value_or(scene.refresh_s);
-  }
-  if (const YamlNode* limit = map.optional("future_limit_ms")) {
-    scene.future_limit_ns =
-        quantities.milliseconds(*limit, "how far ahead of now a stamp may be", kNotNegative)
-            .value_or(scene.future_limit_ns);
-  }
-  if (const YamlNode* gradients = map.optional("gradients")) {
-    scene.gradients = read_flag(*gradients, diagnostics_).value_or(false);
-  }
 }
 
 void CellReader::settle_stops(const YamlNode* zones_node, RobotList& robots, const ObjectList& list,
@@ -232,6 +198,7 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   cell.scene.sensors = sensors.sensors;
   cell.scene.robots = std::move(robots.robots);
   cell.scene.variables = std::move(robots.variables);
+  find_followed_robot(timing_, diagnostics_, cell.scene);
   crop_sensors(sensors, diagnostics_, cell.scene);
 }
 
@@ -245,7 +212,7 @@ void CellReader::read(const YamlNode& root, Cell& cell) {
   if (const YamlNode* node = map.required("units")) units = read_units(*node);
   // Without units, the rest is still read to find its mistakes.
   const Quantities quantities(units.value_or(Units{}), diagnostics_);
-  read_timing(map, quantities, cell.scene);
+  timing_ = read_timing(map, quantities, cell.scene);
   if (const YamlNode* dds = map.optional("dds")) read_dds(*dds, cell, diagnostics_);
   ros_ = map.optional("ros2");
   if (ros_ != nullptr) read_ros(*ros_, quantities, cell.ros);
@@ -315,7 +282,7 @@ void CellReader::refuse_small_budget(const YamlNode& root, const Cell& cell) {
   }
   if (share.queries() <= scene.budget) return;
   diagnostics_.add(
-      budget_ != nullptr ? *budget_ : root,
+      timing_.budget != nullptr ? *timing_.budget : root,
       fmt::format("found a budget of {}; expected at least {} queries a tick, which refreshing "
                   "every pair within refresh_s takes (ticks: {}): raise budget or refresh_s",
                   scene.budget, share.queries(), share.ticks));

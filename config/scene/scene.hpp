@@ -100,6 +100,13 @@ struct Scene {
   std::uint64_t revision = 0;  // FNV-1a of the cell file's bytes (and of referenced meshes): two
                                // scenes that differ have different revisions; never 0
   double rate_hz = 1000.0;
+  // Index into `robots`: ticks follow the joint states of this one. kFreeRunning: they follow none.
+  static constexpr std::uint32_t kFreeRunning = std::numeric_limits<std::uint32_t>::max();
+  std::uint32_t tick_on = kFreeRunning;
+  // From a tick to the next one, at most, s: ticks that follow a robot may be a 64th slower.
+  [[nodiscard]] double longest_period() const noexcept {
+    return (tick_on == kFreeRunning ? 1.0 : 1.0 + 1.0 / 64) / rate_hz;
+  }
   std::uint32_t budget = 2000;  // distance queries a tick, at most: part pairs
   double refresh_s = 10.0;      // every pair is refreshed this often, even if nothing moves, and
                                 // whatever else is urgent: the budget covers it (RefreshShare)

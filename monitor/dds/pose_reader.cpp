@@ -246,6 +246,7 @@ bool PoseReader::hand_over(PoseBatch& batch) noexcept {
   PoseBatch* const slot = ring_.back();
   if (slot == nullptr) return false;
   if (sensors_) sensors_->note(batch);
+  batch.came_ns = SystemClock().monotonic_ns();
   std::swap(*slot, batch);
   ring_.push();
   return true;

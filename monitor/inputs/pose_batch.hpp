@@ -73,6 +73,7 @@ struct PoseBatch {
   std::uint64_t scene_revision = 0;  // of the catalogue that its ids are from; 0: not stated
   std::vector<PoseSample> samples;
   std::vector<JointSample> joints = {};
+  std::int64_t came_ns = 0;  // when it was handed over, CLOCK_MONOTONIC; 0: not known
 
   // Keeps the allocated memory.
   void clear() noexcept {

@@ -29,6 +29,7 @@ TickLoop::TickLoop(const Scene& scene, PoseSource& source, std::vector<ReportSin
       options_(options),
       period_ns_(std::llround(1e9 / scene.rate_hz)),
       ticks_a_second_(std::max<std::uint64_t>(1, std::llround(scene.rate_hz))),
+      phase_(period_ns_),
       statistics_(scene) {
   options_.ahead_ns = std::min(options_.ahead_ns, period_ns_ / 2);
 }
@@ -49,9 +50,10 @@ void TickLoop::run(const std::atomic<bool>& stop) noexcept {
     statistics_.wakeup_second_max_ns =
         std::max(statistics_.wakeup_second_max_ns, started - deadline);
     statistics_.tick_second_max_ns = std::max(statistics_.tick_second_max_ns, ended - started);
+    const std::int64_t correction = phase_.correction(deadline);
     deadline = options_.pace != nullptr && options_.pace->is_behind()
                    ? deadline + period_ns_
-                   : next_deadline(deadline, ended);
+                   : next_deadline(deadline, ended) + correction;
     if (deadline - options_.ahead_ns > ended) slept = ended;
     if (ended - slept > kLongestWithoutSleep) {
       clock_.sleep_until(ended + kShortSleep);
@@ -210,6 +212,7 @@ void TickLoop::take_in() noexcept {
 // Poses for another scene have ids of other objects, so they are counted and not used.
 void TickLoop::use(const PoseBatch& batch) noexcept {
   note_source(batch);
+  note_phase(batch);
   if (state_.use(batch)) return;
   for (const PoseSample& sample : batch.samples)
     state_.monitor().refuse(sample.object, Reject::kWrongRevision);
@@ -223,6 +226,16 @@ void TickLoop::note_source(const PoseBatch& batch) noexcept {
   if (found == used_.end()) return;  // the port admits at most kMaxSources
   if (found == end) ++used_count_;
   *found = {.source = batch.source, .sequence_number = batch.sequence_number};
+}
+
+// Of the robot that ticks follow: its joints, and not its base on tf, which has another clock.
+void TickLoop::note_phase(const PoseBatch& batch) noexcept {
+  const Scene& scene = state_.scene();
+  if (scene.tick_on == Scene::kFreeRunning || batch.came_ns == 0 || batch.joints.empty()) return;
+  const std::uint32_t variable = batch.joints.front().variable;
+  if (!made_for(batch, scene.revision) || variable >= scene.variables.size()) return;
+  if (scene.variables[variable].robot != scene.tick_on) return;
+  if (!scene.robots[scene.tick_on].is_of_base(variable)) phase_.note(batch.came_ns);
 }
 
 // The smallest distance of the run, for the summary at its end.

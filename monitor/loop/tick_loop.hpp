@@ -11,6 +11,7 @@
 
 #include "monitor/inputs/simulated_time.hpp"
 #include "monitor/loop/loop_question.hpp"
+#include "monitor/loop/phase_lock.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/steady_time.hpp"
 #include "monitor/tick/tick_state.hpp"
@@ -48,9 +49,10 @@ class SceneOffer final : public Successor {
   std::vector<ReportSink*> sinks_;
 };
 
-// Deadlines are absolute: start + k * period. A tick that ends after the next deadline is an
-// overrun, and the next tick starts at once. Deadlines missed by a whole period or more are skipped
-// and counted, so that the loop returns to its grid. Cycle numbers count ticks and have no gaps.
+// Deadlines are absolute: start + k * period, unless ticks follow a robot (phase_lock.hpp). A tick
+// that ends after the next deadline is an overrun, and the next tick starts at once. Deadlines
+// missed by a whole period or more are skipped and counted, so that the loop returns to its grid.
+// Cycle numbers count ticks and have no gaps.
 class TickLoop {
  public:
   // Allocates all memory of the loop. Everything given must outlive the loop.
@@ -102,6 +104,7 @@ class TickLoop {
   [[nodiscard]] TickTime tick_time() noexcept;
   void use(const PoseBatch& batch) noexcept;
   void note_source(const PoseBatch& batch) noexcept;
+  void note_phase(const PoseBatch& batch) noexcept;
   void note_minimum(const Report& report) noexcept;
   void hand_over_statistics() noexcept;
   [[nodiscard]] std::int64_t next_deadline(std::int64_t deadline, std::int64_t ended) noexcept;
@@ -117,6 +120,7 @@ class TickLoop {
   TickLoopOptions options_;
   std::int64_t period_ns_;
   std::uint64_t ticks_a_second_;
+  PhaseLock phase_;
 
   const PoseBatch* waiting_ = nullptr;  // taken from the source, but did not fit into the last tick
   std::array<SourceUse, kMaxSources> used_;

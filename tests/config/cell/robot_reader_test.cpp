@@ -262,6 +262,16 @@ TEST_F(Robots, MistakesOfTheUrdfAreNamedByItsLines) {
   EXPECT_THAT(faults("tip.obj", "top.obj"), mistake_at("walker.urdf:6", "top.obj"));
 }
 
+TEST_F(Robots, MayBeFollowedByTheTicks) {
+  EXPECT_EQ(scene(kWalker, kSelf).tick_on, Scene::kFreeRunning);
+  const Scene cell = scene(kWalker, kSelf + "tick: {on: walker}\nrate_hz: 500\n");
+  EXPECT_EQ(cell.tick_on, 0u);
+  EXPECT_EQ(cell.longest_period(), 0.002 * (1 + 1.0 / 64));
+  EXPECT_THAT(errors(kWalker, kSelf + "tick: {on: wolker}\n"),
+              mistake_at("cell.yaml:6", "'wolker'", "expected a robot", "'walker'"));
+  EXPECT_THAT(errors(kWalker, kSelf + "tick: {at: walker}\n"), HasSubstr("'on'"));
+}
+
 TEST_F(Robots, AnotherDescriptionIsAnotherRevision) {
   const std::uint64_t before = scene(kWalker, kSelf).revision;
   EXPECT_EQ(scene(kWalker, kSelf).revision, before);
