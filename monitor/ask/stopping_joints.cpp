@@ -15,7 +15,10 @@ constexpr double kMeasured = 1e-9;  // the largest relative error of an extensio
 }  // namespace
 
 StoppingJoints::StoppingJoints(const Scene& scene, std::uint32_t robot, JointTrajectory& motion)
-    : of_(scene.robots[robot]), stops_(of_.stopping), robot_(robot), period_(scene.longest_period()) {
+    : of_(scene.robots[robot]),
+      stops_(of_.stopping),
+      robot_(robot),
+      period_(scene.longest_period()) {
   for (std::size_t i = 0; i < of_.joints.size(); ++i) {
     const RobotJoint& joint = of_.joints[i];
     if (variables_of(joint.type) != 1) continue;
