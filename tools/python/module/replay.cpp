@@ -165,9 +165,8 @@ class TickRecords {
     stop_columns_.clear();
     for (const Robot& robot : now.robots) {
       const auto found = std::ranges::find(stops_, robot.name);
-      stop_columns_.push_back(found == stops_.end()
-                                  ? -1
-                                  : static_cast<std::int32_t>(found - stops_.begin()));
+      stop_columns_.push_back(
+          found == stops_.end() ? -1 : static_cast<std::int32_t>(found - stops_.begin()));
     }
     for (const ObjectPair& pair : now.pairs) {
       const Names key = names(now, pair);
