@@ -19,16 +19,20 @@ constexpr double kShiftRounding = 0x1p-50;  // of a position that is moved, rela
 PlannedStops::PlannedStops(const Scene& scene) : scene_(scene) {
   joints_.reserve(scene.variables.size());
   onward_.reserve(scene.variables.size());
+  robots_.reserve(scene.robots.size());
 }
 
 std::optional<std::string> PlannedStops::take(const Question& question, Trajectory& trajectory) {
   counts_ = may_deviate_ = false;
   if (!question.stoppable) return std::nullopt;
   if (auto text = take_joints(question, trajectory)) return text;
+  begin_ = trajectory.begin();
   end_ = trajectory.end();
-  goes_on_ = std::ranges::any_of(onward_, [](double velocity) { return velocity != 0.0; });
-  may_deviate_ = !stops_->keeps_path;
-  for (std::size_t k = 0; k < joints_.size(); ++k) {
+  together_ = robots_.size() > 1;
+  goes_on_ =
+      !together_ && std::ranges::any_of(onward_, [](double velocity) { return velocity != 0.0; });
+  may_deviate_ = together_ || !robots_.front()->keeps_path;
+  for (std::size_t k = 0; goes_on_ && k < joints_.size(); ++k) {
     // A sliding joint comes to its limits past the end, and there it leaves the path.
     if (joints_[k].slides && onward_[k] != 0.0) {
       may_deviate_ = true;
@@ -41,10 +45,10 @@ std::optional<std::string> PlannedStops::take(const Question& question, Trajecto
   first_piece_.clear();
   for (std::uint32_t i = 0; i < trajectory.segments(); ++i) {
     first_piece_.push_back(static_cast<std::uint32_t>(pieces_.size()));
-    add_pieces(trajectory, trajectory.segment(i), kPart * (end_ - trajectory.begin()));
+    add_pieces(trajectory, trajectory.segment(i), kPart * (end_ - begin_));
   }
   first_piece_.push_back(static_cast<std::uint32_t>(pieces_.size()));
-  if (goes_on_) {
+  if (goes_on_ || begin_ == end_) {
     for (std::size_t k = 0; k < joints_.size(); ++k) {
       const double last = trajectory.last_velocity(k);
       velocities_[velocities_.size() - joints_.size() + k] = {std::min(0.0, last),
@@ -52,6 +56,7 @@ std::optional<std::string> PlannedStops::take(const Question& question, Trajecto
     }
   }
   boxes_.resize(velocities_.size());
+  reaches_.resize(pieces_.size() * robots_.size());
   count(trajectory);
   return std::nullopt;
 }
@@ -59,26 +64,25 @@ std::optional<std::string> PlannedStops::take(const Question& question, Trajecto
 std::optional<std::string> PlannedStops::take_joints(const Question& question,
                                                      const Trajectory& trajectory) {
   if (!question.beside.empty() || !question.moving.empty()) {
-    return "a question with stoppable states one motion, of one robot: while that stops, motions "
-           "beside it go on; state the places of the others, which then move by their max_speed";
+    return "a question with stoppable has no motions in beside or moving: a stop delays the robot, "
+           "and they go on; name the joints of all robots that stop in one motion, and state the "
+           "places of objects, which then move by their max_speed";
   }
   joints_.clear();
   onward_.clear();
-  const Robot* robot = nullptr;
+  robots_.clear();
+  reaction_ = 0.0;
   for (const std::uint32_t v : trajectory.moved()) {
     const Robot& of = scene_.robots[scene_.variables[v].robot];
-    if (robot != nullptr && robot != &of) {
-      return "a question with stoppable moves one robot; found joints of \"" + robot->name +
-             "\" and \"" + of.name + "\"";
-    }
-    robot = &of;
     if (!of.stopping.is_stated()) {
       return "robot \"" + of.name +
              "\" states no stopping in the cell, so that nothing is known of its stops: add the "
              "key, or ask without stoppable";
     }
-    Joint joint;
-    joint.variable = v;
+    const auto known = std::ranges::find(robots_, &of.stopping);
+    Joint joint{.variable = v, .robot = static_cast<std::uint32_t>(known - robots_.begin())};
+    if (known == robots_.end()) robots_.push_back(&of.stopping);
+    reaction_ = std::max(reaction_, of.stopping.reaction);
     for (std::size_t j = 0; j < of.joints.size(); ++j) {
       const RobotJoint& each = of.joints[j];
       if (variables_of(each.type) != 1 || each.name != scene_.variables[v].name) continue;
@@ -89,7 +93,6 @@ std::optional<std::string> PlannedStops::take_joints(const Question& question,
     onward_.push_back(trajectory.last_velocity(joints_.size()));
     joints_.push_back(joint);
   }
-  stops_ = &robot->stopping;
   return std::nullopt;
 }
 
@@ -103,7 +106,7 @@ void PlannedStops::add_pieces(const Trajectory& trajectory, const Stretch& stret
     same = same && velocities_.back().least == velocities_.back().most;
   }
   const double middle = trajectory.middle(stretch);
-  if (same || stretch.to - stretch.from <= longest || middle <= stretch.from) {
+  if ((same && !together_) || stretch.to - stretch.from <= longest || middle <= stretch.from) {
     pieces_.push_back({.stretch = stretch});
     return;
   }
@@ -116,8 +119,8 @@ void PlannedStops::count(double factor, bool since_told, Trajectory& trajectory)
   counts_ = true;
   factor_ = factor;
   since_told_ = since_told;
-  begin_ = trajectory.begin();
   for (std::size_t piece = 0; piece < pieces_.size(); ++piece) bound(piece);
+  if (together_) return bound_together();
   if (goes_on_) {
     trajectory.go_on(time_past_the_end(), onward_);
     pieces_.back().stretch.to = trajectory.end();
@@ -129,6 +132,9 @@ void PlannedStops::count(double factor, bool since_told, Trajectory& trajectory)
 void PlannedStops::bound(std::size_t at) noexcept {
   Piece& piece = pieces_[at];
   piece.braking = piece.reach = 0.0;
+  piece.earlier = -kInfinity;
+  double* const reaches = reaches_.data() + at * robots_.size();
+  std::fill_n(reaches, robots_.size(), 0.0);
   const bool is_past_end = goes_on_ && at + 1 == pieces_.size();
   for (std::size_t k = 0; k < joints_.size(); ++k) {
     const JointStop& stop = *joints_[k].stop;
@@ -139,14 +145,16 @@ void PlannedStops::bound(std::size_t at) noexcept {
     piece.braking = std::max(piece.braking, stop.time(fastest));
     Box& box = boxes_[at * joints_.size() + k];
     box = {};
-    if (!stops_->keeps_path) {
+    if (!robots_[joints_[k].robot]->keeps_path) {
       box = {-stop.distance(back), stop.distance(forth)};
     } else {
       const bool has_one_speed = is_past_end || range.least == range.most;
       const double quotient = !has_one_speed  ? stop.longest(fastest)
                               : fastest > 0.0 ? rounded_up(stop.distance(fastest) / fastest)
                                               : 0.0;
-      piece.reach = std::max(piece.reach, rounded_up(factor_ * quotient));
+      double& reach = reaches[joints_[k].robot];
+      reach = std::max(reach, rounded_up(factor_ * quotient));
+      piece.reach = std::max(piece.reach, reach);
     }
     if (!is_past_end || !joints_[k].slides) continue;
     const double length = piece.stretch.to - piece.stretch.from;
@@ -158,7 +166,7 @@ void PlannedStops::bound(std::size_t at) noexcept {
 // The motion goes on in a line past the last waypoint: until the brakes act, and then for the reach
 // of a stop.
 double PlannedStops::time_past_the_end() const noexcept {
-  const double reaction = rounded_up(factor_ * stops_->reaction);
+  const double reaction = rounded_up(factor_ * reaction_);
   double longest = rounded_up(reaction + pieces_.back().reach);
   for (std::size_t i = 0; i + 1 < pieces_.size(); ++i)
     longest = std::max(longest, rounded_up(pieces_[i].stretch.to - end_ + pieces_[i].reach));
@@ -171,8 +179,7 @@ void PlannedStops::note_earlier() noexcept {
   for (const Piece& piece : pieces_) farthest = std::max(farthest, piece.reach);
   for (std::size_t p = 0; p < pieces_.size(); ++p) {
     Piece& piece = pieces_[p];
-    piece.earlier = -kInfinity;
-    for (std::size_t i = p; stops_->keeps_path && i-- > 0;) {
+    for (std::size_t i = p; robots_.front()->keeps_path && i-- > 0;) {
       const double since = piece.stretch.from - pieces_[i].stretch.to;
       if (since > farthest) break;
       if (since > pieces_[i].reach) continue;
@@ -182,10 +189,66 @@ void PlannedStops::note_earlier() noexcept {
   }
 }
 
-// The brakes act at the place, or before it; and no later than a reaction after the motion.
+std::size_t PlannedStops::past_window(std::size_t piece, double time) const noexcept {
+  const double end = rounded_up(pieces_[piece].stretch.to + time);
+  while (piece < pieces_.size() && pieces_[piece].stretch.from <= end) ++piece;
+  return piece;
+}
+
+// The pieces of all robots, which are told to stop at one instant of a piece. The brakes of each
+// act within its reaction. Only later pieces are read, which are still those of bound().
+void PlannedStops::bound_together() noexcept {
+  for (std::size_t p = 0; p < pieces_.size(); ++p) {
+    for (std::size_t r = 0; r < robots_.size(); ++r) {
+      const double until_brakes = rounded_up(factor_ * robots_[r]->reaction);
+      const std::size_t past = past_window(p, until_brakes);
+      double reach = 0.0;
+      for (std::size_t i = p; i < past; ++i) {
+        pieces_[p].braking = std::max(pieces_[p].braking, pieces_[i].braking);
+        reach = std::max(reach, reaches_[i * robots_.size() + r]);
+      }
+      for (std::size_t k = 0; k < joints_.size(); ++k) {
+        if (joints_[k].robot != r) continue;
+        Box& box = boxes_[p * joints_.size() + k];
+        for (std::size_t i = p; i < past; ++i) {
+          box.low = std::min(box.low, boxes_[i * joints_.size() + k].low);
+          box.high = std::max(box.high, boxes_[i * joints_.size() + k].high);
+        }
+        const Box along = path_within(p, k, rounded_up(until_brakes + reach));
+        box = {-rounded_up(-box.low - along.low), rounded_up(box.high + along.high)};
+      }
+    }
+  }
+}
+
+PlannedStops::Box PlannedStops::path_within(std::size_t p, std::size_t k,
+                                            double window) const noexcept {
+  const double end = rounded_up(pieces_[p].stretch.to + window);
+  double forth = 0.0, back = 0.0;  // the largest speeds
+  Box went;
+  const auto go = [&](double least, double most, double time) {
+    forth = std::max(forth, most);
+    back = std::max(back, -least);
+    went.high = rounded_up(went.high + rounded_up(time * std::max(0.0, most)));
+    went.low = -rounded_up(-went.low + rounded_up(time * std::max(0.0, -least)));
+  };
+  const std::size_t past = past_window(p, window);
+  for (std::size_t i = p; i < past; ++i) {
+    const Stretch& part = pieces_[i].stretch;
+    const VelocityRange& range = velocities_[i * joints_.size() + k];
+    go(range.least, range.most, rounded_up(std::min(end, part.to) - part.from));
+  }
+  if (end > end_) go(onward_[k], onward_[k], rounded_up(end - end_));
+  return {std::max(went.low, -rounded_up(window * back)),
+          std::min(went.high, rounded_up(window * forth))};
+}
+
+// The brakes act at the place, or before it; and no later than a reaction after the motion. Several
+// robots are told at the place.
 double PlannedStops::elapsed_at(double t, double braking, double earlier) const noexcept {
-  if (since_told_) return stops_->reaction + std::max(braking, earlier);
-  return std::max(std::min(t, end_ + stops_->reaction) - begin_ + braking, earlier);
+  if (since_told_) return reaction_ + std::max(braking, earlier);
+  if (together_) return t - begin_ + reaction_ + braking;
+  return std::max(std::min(t, end_ + reaction_) - begin_ + braking, earlier);
 }
 
 void PlannedStops::find_pieces(const Stretch& stretch, double at) noexcept {

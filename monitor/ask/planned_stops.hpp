@@ -1,5 +1,5 @@
-// The robot that a question moves may be told to stop at any instant of its motion: where it may be
-// until it stands, and when. PLANNED_STOPS.md has the region with its proof.
+// The robots that a question moves may be told to stop at any instant of its motion: where they may
+// be until they stand, and when. PLANNED_STOPS.md has the region with its proof.
 #pragma once
 
 #include <cstdint>
@@ -37,7 +37,7 @@ class PlannedStops {
   void count_scaled(double factor, Trajectory& trajectory) noexcept {
     count(factor, true, trajectory);
   }
-  // Leaves the robot where the motion has it, until the next count().
+  // Leaves the robots where the motion has it, until the next count().
   void count_none() noexcept { counts_ = false; }
   [[nodiscard]] bool counts() const noexcept { return counts_; }
   // A joint may leave the path in a stop.
@@ -57,15 +57,16 @@ class PlannedStops {
  private:
   struct Joint {
     std::uint32_t variable = 0;
+    std::uint32_t robot = 0;  // into robots_
     const JointStop* stop = nullptr;
     bool slides = false;
-    Nearing deviation;  // from the middle of where it may be
+    Nearing deviation = {};  // from the middle of where it may be
   };
   // A part of a segment, in which the largest speeds count for all stops.
   struct Piece {
     Stretch stretch;
     double reach = 0.0;    // s: a stop that begins here goes on for no more of the path
-    double braking = 0.0;  // s: until it stands
+    double braking = 0.0;  // s: until all stand
     // The latest instant at which a stop that begins in an earlier piece and reaches this one is
     // over, s since the first waypoint. With since_told_: the longest braking, s.
     double earlier = -kInfinity;
@@ -80,6 +81,12 @@ class PlannedStops {
                                                        const Trajectory& trajectory);
   void add_pieces(const Trajectory& trajectory, const Stretch& stretch, double longest);
   void bound(std::size_t piece) noexcept;
+  void bound_together() noexcept;
+  // How far the motion takes a joint back and forth within a time, s of the motion, from anywhere
+  // in a piece.
+  [[nodiscard]] Box path_within(std::size_t piece, std::size_t joint, double time) const noexcept;
+  // The piece that follows the last one of which a stop, told in `piece`, may begin within `time`.
+  [[nodiscard]] std::size_t past_window(std::size_t piece, double time) const noexcept;
   [[nodiscard]] double time_past_the_end() const noexcept;
   void note_earlier() noexcept;
   // What elapsed() says for one instant.
@@ -87,8 +94,10 @@ class PlannedStops {
   void find_pieces(const Stretch& stretch, double at) noexcept;
 
   const Scene& scene_;
-  const RobotStops* stops_ = nullptr;
+  std::vector<const RobotStops*> robots_;
+  double reaction_ = 0.0;  // s: the longest of these
   bool counts_ = false, may_deviate_ = false;
+  bool together_ = false;  // several robots stop; pieces are those in which they are told
   bool goes_on_ = false, since_told_ = false;
   double factor_ = 1.0;
   double begin_ = 0.0, end_ = 0.0;  // s: the first waypoint and the last one
@@ -98,6 +107,7 @@ class PlannedStops {
   std::vector<std::uint32_t> first_piece_;  // by segment, and the end
   std::vector<VelocityRange> velocities_;   // by piece and joint, as the motion is timed
   std::vector<Box> boxes_;                  // by piece and joint
+  std::vector<double> reaches_;             // by piece and robot: as Piece::reach
   std::size_t from_ = 0, to_ = 0, at_ = 0;  // pieces of the last place(): the first, the last, and
                                             // that of its middle
   Instants elapsed_, clock_;

@@ -12,6 +12,7 @@
 #include <utility>
 
 #include "monitor/files/file_error.hpp"
+#include "monitor/interface/pair_name.hpp"
 #include "monitor/interface/report_fields.hpp"
 #include "monitor/tick/monitor.hpp"
 
@@ -71,6 +72,17 @@ void for_each_column(const PairReport& pair, const Visit& visit) {
 }
 
 void put(std::string& row, PairStatus status) { row += name(status); }
+void put(std::string& row, SeparationValidity validity) { row += name(validity); }
+
+// Visits the columns of a robot's stop. The robot is in their names.
+template <class Visit>
+void for_each_stop_column(const RobotStop& stop, const Visit& visit) {
+  for_each_field(
+      [&visit](const Field& field, const auto& value) {
+        if (field.name != "robot") visit(field, value);
+      },
+      stop);
+}
 
 }  // namespace
 
@@ -84,7 +96,15 @@ ReportCsv::ReportCsv(const std::filesystem::path& file, const Scene& scene, bool
   follow(scene);
   rows_ = "tick,now_ns,object_a,object_b";
   for_each_column({}, [this](const std::string& column, const auto&) { rows_ += "," + column; });
-  rows_ += ",scene_revision,contact,contact_status,contact_depth,blind_shell,unseen\n";
+  rows_ += ",scene_revision,contact,contact_status,contact_depth,blind_shell,unseen";
+  for (const Robot& robot : scene.robots) {
+    if (!robot.stopping.is_stated()) continue;
+    robots_.push_back(robot.name);
+    for_each_stop_column({}, [&](const Field& field, const auto&) {
+      rows_.append(",").append(quoted(fmt::format("{}/stop_{}", robot.name, field.name)));
+    });
+  }
+  rows_ += '\n';
 }
 
 void ReportCsv::follow(const Scene& scene) {
@@ -100,6 +120,7 @@ void ReportCsv::follow(const Scene& scene) {
 void ReportCsv::add(const ReplayedTick& tick) {
   if (!error_.empty()) return;
   if (&tick.cell.scene != scene_) follow(tick.cell.scene);
+  note_stops(tick.report);
   if (all_pairs_) {
     for (std::uint32_t pair = 0; pair < scene_->pairs.size(); ++pair) {
       add_row(tick.report, tick.monitor.pair(pair));
@@ -108,6 +129,27 @@ void ReportCsv::add(const ReplayedTick& tick) {
     for (const PairReport& pair : tick.report.pairs) add_row(tick.report, pair);
   }
   if (rows_.size() >= kWriteAt) write();
+}
+
+// Robots are found by name, since a changed cell numbers them otherwise.
+void ReportCsv::note_stops(const Report& report) {
+  stops_.clear();
+  for (const std::string& robot : robots_) {
+    const auto found = std::ranges::find_if(report.stops, [&](const RobotStop& stop) {
+      return scene_->robots[stop.robot].name == robot;
+    });
+    const bool is_known = found != report.stops.end();
+    for_each_stop_column(is_known ? *found : RobotStop(),
+                         [&]<class Value>(const Field&, const Value& value) {
+                           stops_ += ',';
+                           if (!is_known) return;
+                           if constexpr (std::is_same_v<Value, std::uint32_t>) {
+                             stops_ += quoted(pair_name(*scene_, value));
+                           } else {
+                             put(stops_, value);
+                           }
+                         });
+  }
 }
 
 // In the order of the header.
@@ -124,7 +166,7 @@ void ReportCsv::add_row(const Report& report, const PairReport& pair) {
   rows_.append(",").append(revision_);
   add_contact(report, pair.pair);
   add_hidden(report, pair.pair);
-  rows_ += '\n';
+  rows_.append(stops_).append("\n");
 }
 
 // The columns are empty where no contact is allowed.

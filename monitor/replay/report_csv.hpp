@@ -18,6 +18,9 @@ namespace clearance {
 // in the world frame, and numbers read back exactly. The column scene_revision is that of
 // the cell which was in force, in hexadecimal digits; its names are in the row. After it come the
 // contact that is allowed for the pair, its status and depth; they are empty where there is none.
+// The last columns are those of robots with `stopping`: NAME/stop_validity, stop_scaling,
+// stop_clearance, stop_pair, stop_share and stop_time, the same in all rows of a tick. The robots
+// are those of the first scene. A later scene without such a robot leaves its columns empty.
 // Errors are kept: error() says what happened.
 class ReportCsv {
  public:
@@ -33,6 +36,7 @@ class ReportCsv {
     void operator()(std::FILE* file) const { std::fclose(file); }
   };
   void follow(const Scene& scene);
+  void note_stops(const Report& report);
   void add_row(const Report& report, const PairReport& pair);
   void add_contact(const Report& report, std::uint32_t pair);
   void add_hidden(const Report& report, std::uint32_t pair);
@@ -44,6 +48,8 @@ class ReportCsv {
   std::unique_ptr<std::FILE, Close> file_;
   std::vector<std::string> names_;     // of the objects, quoted where needed
   std::vector<std::string> contacts_;  // their names, quoted as well
+  std::vector<std::string> robots_;    // of the first scene, those that state how they stop
+  std::string stops_;                  // their columns in this tick
   std::string revision_;
   std::string rows_;  // not written yet
   std::string error_;

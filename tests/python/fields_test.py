@@ -26,6 +26,9 @@ def test_a_report_has_the_fields_of_the_message():
 
 
 def test_records_have_the_fields_of_their_messages(run_daemon, planar_file):
+    stopping = "urdf: planar.urdf, stopping: {reaction_ms: 50, time_ms: 200}"
+    cell = planar_file.read_text().replace("urdf: planar.urdf", stopping)
+    planar_file.write_text(cell.replace("max_speed: 100", "max_speed: 1"))
     daemon = run_daemon(planar_file)
     with clearance.Reports(daemon.connection(), separation=True) as reports:
         report = reports.next(LIMIT_S)
@@ -34,6 +37,7 @@ def test_records_have_the_fields_of_their_messages(run_daemon, planar_file):
             "PairDistance": report.pairs,
             "ContactState": report.contacts,
             "HiddenState": report.hidden,
+            "RobotStop": report.stops,
         }
         if report.separated_zones is not None:
             records |= {

@@ -2,6 +2,7 @@
 
 import re
 
+import clearance
 from conftest import SOURCE
 
 TEXT = (SOURCE / "tools/python/README.md").read_text()
@@ -19,7 +20,18 @@ def test_the_lines_about_bodies_and_robots_run(monkeypatch, arm_files):
         exec(compile(block, chapter, "exec"), {})
 
 
+# Wall and ball are out of the arm's reach. A factor of a motion that need not be stoppable may be larger than 1.
+def test_the_lines_about_stops_run(monkeypatch, planar_file):
+    stops = "stopping: {reaction_ms: 40, time_ms: 160}"
+    text = planar_file.read_text().replace("planar.urdf}", f"planar.urdf, {stops}}}").replace("max_speed: 100", "max_speed: 0.1")
+    (planar_file.parent / "stopping.yaml").write_text(text)
+    monkeypatch.chdir(planar_file.parent)
+    names = {"clearance": clearance}
+    exec(compile(blocks_of("Motions before they are made")[1], "stops", "exec"), names)
+    assert names["answer"].is_free(0.02) and names["answer"].time_limit.factor == 1
+
+
 def test_the_other_lines_are_python():
     for chapter in ("Motions before they are made", "Recordings", "Live", "A cell in shares"):
-        [block] = blocks_of(chapter)
+        block = blocks_of(chapter)[0]
         compile(block, chapter, "exec")

@@ -57,6 +57,25 @@ def test_each_tick_has_the_distances_of_its_configuration(cell, joints, recordin
     assert np.all(ticks.zone_active[inside, 0]) and not ticks.zone_active.all()
 
 
+# The shoulder turns at 0.5 rad/s, and goes on for 50 ms and then for at most 200 ms. From 1.062 m, the arm comes to 0.978 m.
+def test_a_replay_has_how_each_robot_stops(planar_file, tmp_path):
+    file = planar_file.parent / "stops.yaml"
+    stopping = "urdf: planar.urdf, stopping: {reaction_ms: 40, path: kept, time_ms: 200}"
+    zones = "leave_above: 1.05}, {name: stops, between: [lower, wall], stops: {margin: 1}}]"
+    file.write_text(CELL.replace("urdf: planar.urdf", stopping).replace("leave_above: 1.05}]", zones))
+    cell = clearance.Cell(file)
+    run = tmp_path / "run.csv"
+    rows = [f"{1_000_000_000 + 10_000_000 * i},{-1 + 0.005 * i},0.5,0,0" for i in range(120)]
+    run.write_text("t_ns,shoulder,shoulder/velocity,elbow,elbow/velocity\n" + "\n".join(rows) + "\n")
+    ticks = clearance.replay(cell, run, tick_hz=0)
+    assert ticks.stop_scaling.shape == (120, 1) and ticks.stop_lower.shape == ticks.lower.shape
+    assert np.all(ticks.stop_validity == 2) and np.all(ticks.stop_lower <= ticks.lower)
+    assert ticks.stop_scaling[0, 0] == 1 and ticks.stop_share[0, 0] == 1 and 0.6 < ticks.stop_scaling[-1, 0] < 0.63
+    assert set(cell.pairs[ticks.stop_pair[-1, 0]]) == {"lower", "wall"}
+    assert np.all((ticks.stop_time >= 0.24) & (ticks.stop_time <= 0.26))
+    np.testing.assert_allclose(ticks.stop_clearance[-1, 0], ticks.stop_lower[-1].min() - 1.0, atol=1e-12)
+
+
 def test_a_window_leaves_the_other_ticks_out(cell, recording):
     ticks = clearance.replay(cell, recording, tick_hz=0, start_s=0.5, end_s=1.0)
     assert 49 <= len(ticks) <= 51

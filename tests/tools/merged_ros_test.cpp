@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <csignal>
 #include <filesystem>
 #include <map>
@@ -11,6 +12,8 @@
 #include "monitor/client/commands.hpp"
 #include "monitor/wire/moveit_types.hpp"
 #include "monitor/wire/ros_messages.hpp"
+#include "tests/monitor/ask/stopping_scara.hpp"
+#include "tests/shared/ros_joints.hpp"
 #include "tests/shared/ros_reader.hpp"
 #include "tests/tools/shared_cells.hpp"
 
@@ -31,6 +34,7 @@ RosType type_of_kind(TopicKind kind) {
 class MergedForRos : public SharedCells {
  protected:
   MergedForRos() : SharedCells("commands: {from: [planner]}\n") {}
+  using SharedCells::SharedCells;
 
   // Starts the shares and clearance-merge, and waits for the first number.
   void start_joined(const std::string& cell_of_merge = {}) {
@@ -149,6 +153,69 @@ TEST_F(MergedForRos, ACellThatCannotBeReadThereIsToldByName) {
       << merge->output() << logs();
   merge->signal(SIGTERM);
   EXPECT_EQ(merge->wait(), 0) << merge->output();
+}
+
+// The finger circles between two pins at 2 m, one of each share: at 0.9 rad and at -1.2 rad.
+std::string stopping_cell(const std::string& urdf) {
+  const auto pin = [](const std::string& name, double at) {
+    return "  - {name: " + name + ", fixed: true, sphere: {radius: 0.1}, pose: {xyz: [" +
+           std::to_string(2.0 * std::cos(at)) + ", " + std::to_string(2.0 * std::sin(at)) +
+           ", 0]}}\n";
+  };
+  return "name: stops\nunits: {length: m, angle: rad}\nrate_hz: 200\n"
+         "defaults: {age_limit_ms: 10000}\nrobots:\n  - {name: arm, urdf: " +
+         urdf +
+         ", joints: {elbow: {velocity: 2}}, stopping: {reaction_ms: 40, path: kept, time_ms: "
+         "300}}\nobjects:\n" +
+         pin("ahead", 0.9) + pin("behind", -1.2) +
+         "pairs: [{between: [arm, ahead]}, {between: [arm, behind]}]\n"
+         "zones: [{name: stops, between: [arm, ahead], stops: {margin: 0.05}}]\n"
+         "shares:\n  - {name: ahead, pairs: [{between: [arm, ahead]}]}\n"
+         "  - {name: behind, pairs: [{between: [arm, behind]}]}\n";
+}
+
+class MergedStops : public MergedForRos {
+ protected:
+  MergedStops() : MergedForRos(CellText{stopping_cell(urdf())}) {}
+  // The share of its speed, sent for a shoulder at `angle` that moves, is as said.
+  template <class IsSo>
+  bool comes_at(double angle, double speed, const IsSo& is_so) {
+    return eventually([&] {
+      joints.send({"shoulder", "elbow", "push"}, {angle, 0.0, 0.0}, {speed, 0.0, 0.0});
+      return scaling.take() && is_so(scaling.last().data);
+    });
+  }
+
+  RosJoints joints{reader};
+
+ private:
+  static std::string urdf() {
+    static const ScratchFolder folder;
+    write_text(folder / "scara.urdf", finger_urdf());
+    return (folder / "scara.urdf").string();
+  }
+};
+
+// The most that a report proves: its positions have no age.
+double largest_scaling(double angle, double speed, double pin, double margin) {
+  const double until_pin = std::abs(pin - angle) - angle_before(margin);
+  return (until_pin - 0.045 * speed) / (0.3 * speed);
+}
+
+TEST_F(MergedStops, TheScalingIsTheLeastOfAllSharesAndZeroWithoutOneOfThem) {
+  start_joined();
+  ASSERT_TRUE(joints.is_heard());
+  const auto is_clear = [](double part) { return part == 1.0; };
+  ASSERT_TRUE(comes_at(0.0, 0.0, is_clear)) << merge->output() << logs();
+  const double ahead = largest_scaling(0.5, 1.9, 0.9, 0.05);
+  const double behind = largest_scaling(-0.7, 1.9, -1.2, 0.0);
+  ASSERT_GT(behind, ahead + 0.1);
+  EXPECT_TRUE(comes_at(0.5, 1.9, [&](double part) { return 0.0 < part && part <= ahead; }));
+  EXPECT_TRUE(comes_at(0.5, -0.1, is_clear));
+  EXPECT_TRUE(comes_at(-0.7, -1.9, [&](double part) { return 0.0 < part && part <= behind; }));
+  EXPECT_TRUE(comes_at(0.5, -0.1, is_clear));
+  daemons["behind"]->signal(SIGKILL);
+  EXPECT_TRUE(comes_at(0.5, -0.1, [](double part) { return part == 0.0; })) << merge->output();
 }
 
 }  // namespace

@@ -48,6 +48,9 @@ class Tutorial(unittest.TestCase):
     def test_the_one_of_stops_does_as_well(self):
         self.assertEqual(self.follow("STOPS_TUTORIAL.md"), (5, 8))
 
+    def test_the_page_of_questions_asks_what_it_shows(self):
+        self.assertEqual(self.follow("../idl/QUESTIONS.md"), (1, 2))
+
     def follow(self, page):
         """Runs the page's commands; returns how many blocks have run, and how many lines were compared."""
         with tempfile.TemporaryDirectory() as home:

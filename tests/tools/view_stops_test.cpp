@@ -5,6 +5,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <map>
@@ -130,24 +131,39 @@ TEST_P(ViewOfAStoppingRobot, HasARowAGhostWhereItStandsAndThePairThatLimitsIt) {
   const Place from = finger_at(kShoulder, kElbow);
   const Place pin = finger_at(kShoulder + kShoulderSpeed * kToPin, kElbow + kElbowSpeed * kToPin);
   const double distance = std::hypot(pin.x - from.x, pin.y - from.y) - kRadii;
-  ASSERT_EQ(rests["row"].size(), 6u);
+  ASSERT_EQ(rests["row"].size(), 8u);
   EXPECT_EQ(rests["row"][0], "arm stops: pin – finger");
   EXPECT_NEAR(std::stod(std::string(rests["row"][1])), 1e3 * distance, 1.0);
   EXPECT_NEAR(std::stod(std::string(rests["row"][3])), 1e3 * (distance - kMargin), 1.0);
   EXPECT_EQ(rests["row"][4], "1.00");
+  EXPECT_EQ(rests["row"][6], "100 %") << "of its motion is clear";
   EXPECT_EQ(rests["kind"], "");
   EXPECT_EQ(rests["ghosts"], json::object()) << "none at rest";
 
   const json& away = shown["moves away"];
   EXPECT_EQ(away["row"][4], "1.00");
   EXPECT_EQ(away["kind"], "");
-  EXPECT_THAT(std::string(away["title"]), HasSubstr("stands within"));
+  EXPECT_EQ(away["row"][6], "100 %");
+  EXPECT_GE(std::stod(std::string(away["row"][7])), kReaction + kElbowTime - 0.005)
+      << "the time until it stands";
   expect_standstill(away["ghosts"], -1.0, GetParam());
   expect_colour(away["ghosts"], away["good"]);
   EXPECT_EQ(away["lines"], json({{{"pair", "pin – finger"}, {"level", "outside"}}}));
 
   const json& near = shown["comes near"];
   EXPECT_LT(std::stod(std::string(near["row"][4])), 1.0);
+  EXPECT_LT(std::stod(std::string(near["row"][6])), 100.0);
+  const json &head = near["csv"][0], &first = near["csv"][1];
+  ASSERT_EQ(head.size(), first.size());
+  const auto saved = [&](const char* column) {
+    return std::string(first.at(std::ranges::find(head, column) - head.begin()));
+  };
+  EXPECT_LT(std::stod(saved("arm/stop_scaling")), 1.0);
+  EXPECT_LT(std::stod(saved("arm/stop_share")), 1.0);
+  EXPECT_LT(std::stod(saved("arm/stop_clearance_m")), 0.0);
+  EXPECT_EQ(saved("arm/stop_pair"), "pin – finger");
+  EXPECT_NEAR(std::stod(saved("stop_lower_m")), std::stod(saved("arm/stop_clearance_m")) + kMargin,
+              1e-9);
   ASSERT_NE(near["plotted"], "") << "a cell without other scalings has the plot";
   EXPECT_LT(std::stod(std::string(near["plotted"])), 1.0);
   EXPECT_EQ(near["kind"], "alarm");

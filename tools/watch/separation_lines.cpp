@@ -39,8 +39,11 @@ std::string text_of(const Feed& feed, const clearance_msg_RobotStop& stop) {
   if (static_cast<SeparationValidity>(stop.validity) == SeparationValidity::kUnknown)
     return fmt::format("{} stops: not known, scaling 0, {}", name, pair);
   if (stop.scaling < 1.0)
-    return fmt::format("{} stops: scaling {:.2f}, {:.0f} % of its motion is clear, {}", name,
-                       stop.scaling, 100.0 * stop.share, pair);
+    return fmt::format(
+        "{} stops: scaling {:.2f}, {:.0f} % of its motion is clear, {}, {:.3f} m {} the margin, "
+        "in {:.2f} s",
+        name, stop.scaling, std::floor(100.0 * stop.share), pair, std::abs(stop.clearance),
+        stop.clearance < 0.0 ? "below" : "above", stop.time);
   return fmt::format("{} stops: clear by {:.3f} m in {:.2f} s, {}", name, stop.clearance, stop.time,
                      pair);
 }

@@ -306,7 +306,64 @@ TEST(StoppableMotions, AreRefusedBesideOtherMotionsThatAreStated) {
   const Scene scene = scene_of_scara({.ball = "max_speed: 0.1, may_jump: true, "});
   Question question = turning(0.5, 1.0);
   question.moving = {{.object = "ball", .times = {0.0}, .world_from_object = {test::at(9, 0, 0)}}};
-  EXPECT_NE(refusal(scene, question).find("states one motion"), std::string::npos);
+  EXPECT_NE(refusal(scene, question).find("no motions in beside or moving"), std::string::npos);
+}
+
+// Two arms whose fingers come towards each other, each as the other's picture in a mirror.
+// `stands`: the angle of both shoulders at which the fingers are `left` apart.
+Scene mirrored_arms(const std::string& path, double stands, double left,
+                    const std::string& of_right) {
+  const test::ScratchFolder folder;
+  test::write_text(folder / "scara.urdf", test::finger_urdf());
+  const auto robot = [](const std::string& name, const std::string& rest) {
+    return "  - {name: " + name + ", urdf: scara.urdf, prefix: " + name +
+           "_, joints: {elbow: {velocity: 2}}" + rest + "}\n";
+  };
+  const std::string stopping = ", stopping: {reaction_ms: 40, " + path +
+                               ", time_ms: 100, joints: {shoulder: {deceleration: 4}}}";
+  const double apart = 4.0 * std::cos(stands) + 0.1 + left;
+  return scene_of("name: test\nunits: {length: m, angle: rad}\nrobots:\n" +
+                      robot("left", stopping) +
+                      robot("right", ", base: {pose: {xyz: [" + std::to_string(apart) +
+                                         ", 0, 0], rpy: [0, 0, 3.14159265358979]}}" +
+                                         (of_right.empty() ? stopping : of_right)) +
+                      "pairs: [{between: [left, right]}]\n",
+                  folder / "cell.yaml");
+}
+
+Question both_turning(double from, double angle, double speed) {
+  Question question;
+  question.motion = {.joints = {"left_shoulder", "right_shoulder"},
+                     .times = {0.0, angle / speed},
+                     .positions = {from, -from, from - angle, angle - from},
+                     .velocities = {}};
+  for (const std::string arm : {"left", "right"})
+    for (const std::string joint : {"_elbow", "_push"}) question.held.push_back({arm + joint, 0.0});
+  question.stoppable = true;
+  return question;
+}
+
+// Both are told at the same instant, and go on as far as one that stops alone.
+TEST(StoppableMotions, OfTwoRobotsGoOnForBoth) {
+  Random random(65);
+  for (std::uint64_t i = 0; i < repeats(20); ++i) {
+    const double angle = random.uniform(0.1, 0.5), speed = random.uniform(0.2, 1.0);
+    const double left = random.uniform(0.05, 0.2), stands = random.uniform(1.5, 1.6);
+    const Question question = both_turning(stands + angle_of_stop(speed) + angle, angle, speed);
+    for (const std::string& path : {test::kKept, test::kLeft}) {
+      const Scene scene = mirrored_arms(path, stands, left, "");
+      const Answer answer = answered(scene, question);
+      EXPECT_LE(answer.lower, left + 1e-9);
+      // Boxes count along the largest lever of both fingers, and not along their circles.
+      EXPECT_GE(answer.lower, left - 1.1e-3 - 0.15 * angle_of_stop(speed)) << path;
+    }
+  }
+}
+
+TEST(StoppableMotions, OfTwoRobotsNameTheOneThatDoesNotStateHowItStops) {
+  const Scene scene = mirrored_arms(test::kKept, 1.6, 0.1, ", age_limit_ms: 100");
+  EXPECT_NE(refusal(scene, both_turning(2.0, 0.2, 1.0)).find("robot \"right\" states no stopping"),
+            std::string::npos);
 }
 
 }  // namespace

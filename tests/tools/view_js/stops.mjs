@@ -13,7 +13,8 @@ const facts = () => page.evaluate(() => {
     ghosts: Object.fromEntries(stopGhosts.visible ? stopGhosts.children.filter(({ visible }) => visible).map(({ userData: { object }, matrix, material }) =>
       [name(object), { place: matrix.elements.slice(12, 15), x: matrix.elements.slice(0, 3), colour: `#${material.color.getHexString()}` }]) : []),
     lines: lines.shown.map(({ pair, level }) => ({ pair: state.pairs[pair.pair].name, level })),
-    row: [...row.cells].map(({ textContent }) => textContent), kind: row.className, title: row.title,
+    row: [...row.cells].map(({ textContent }) => textContent), kind: row.className,
+    csv: window.clearance.csv().split("\r\n").map((line) => line.split(",")),
     plotted: document.getElementById("scaling").hidden ? "" : document.getElementById("plot-scaling-now").textContent,
     good: css("--good"), alarm: css("--alarm"), query: new URLSearchParams(location.search).get("stops"), pairs: new URLSearchParams(location.search).get("pairs"),
   };

@@ -3,6 +3,7 @@
 #include <pybind11/stl.h>
 #include <pybind11/stl/filesystem.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cstring>
 #include <limits>
@@ -25,8 +26,8 @@ class RefusedReplay : public std::runtime_error {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-// Writes ticks as records of one layout. Pairs and zones are those of the cell that the caller
-// gave, by name, also after the recording has changed its cell.
+// Writes ticks as records of one layout. Pairs, zones and robots that state how they stop are those
+// of the cell that the caller gave, by name, also after the recording has changed its cell.
 class TickRecords {
  public:
   explicit TickRecords(const Scene& scene) : scene_(scene) {
@@ -34,12 +35,18 @@ class TickRecords {
       if (pair.publish) column_of_[names(scene, pair)] = pairs_++;
     }
     zones_ = scene.zones.size();
+    for (const Robot& robot : scene.robots)
+      if (robot.stopping.is_stated()) stops_.push_back(robot.name);
     for (const Number& number : kNumbers) place(number.name, number.type, 8);
     for (const char* name : kByPair)
       by_pair_.push_back(place(name, format(pairs_, "f8"), 8 * pairs_));
+    for (const char* name : kByStop)
+      by_stop_.push_back(place(name, format(stops_.size(), "f8"), 8 * stops_.size()));
+    stop_pair_ = place("stop_pair", format(stops_.size(), "i4"), 4 * stops_.size());
     minimum_pair_ = place("minimum_pair", "i4", 4);
     status_ = place("status", format(pairs_, "u1"), pairs_);
     zone_active_ = place("zone_active", format(zones_, "?"), zones_);
+    stop_validity_ = place("stop_validity", format(stops_.size(), "u1"), stops_.size());
     certified_ = place("minimum_certified", "?", 1);
     size_ = (size_ + 7) / 8 * 8;
   }
@@ -72,6 +79,11 @@ class TickRecords {
         put(row, zone_active_ + static_cast<std::size_t>(zone_columns_[i]),
             static_cast<std::uint8_t>(report.zones[i].active));
     }
+    for (std::size_t i = 0; i < stops_.size(); ++i) put_stop(row, i, kUnknownStop);
+    for (const RobotStop& stop : report.stops) {
+      if (stop_columns_[stop.robot] >= 0)
+        put_stop(row, static_cast<std::size_t>(stop_columns_[stop.robot]), stop);
+    }
   }
 
   // Called with the interpreter's lock.
@@ -87,8 +99,13 @@ class TickRecords {
                                         {"time_s", "f8"},          {"lower_all", "f8"},
                                         {"swept_lower_all", "f8"}, {"minimum_distance", "f8"},
                                         {"minimum_lower", "f8"},   {"minimum_upper", "f8"}};
-  static constexpr const char* kByPair[] = {"distance", "lower", "upper", "swept_lower",
-                                            "closing_speed"};
+  static constexpr const char* kByPair[] = {"distance",    "lower",      "upper",
+                                            "swept_lower", "stop_lower", "closing_speed"};
+  static constexpr const char* kByStop[] = {"stop_scaling", "stop_clearance", "stop_share",
+                                            "stop_time"};
+  static constexpr std::uint32_t kNoPair = ~0u;
+  static constexpr RobotStop kUnknownStop = {
+      .clearance = -kInfinity, .pair = kNoPair, .time = kUnknown};
   using Names = std::pair<std::string, std::string>;
 
   static Names names(const Scene& scene, const ObjectPair& pair) {
@@ -102,7 +119,7 @@ class TickRecords {
   static PairReport unknown() {
     PairReport pair;
     pair.distance = pair.closing_speed = kUnknown;
-    pair.lower = pair.swept_lower = -kInfinity;
+    pair.lower = pair.swept_lower = pair.stop_lower = -kInfinity;
     pair.upper = kInfinity;
     return pair;
   }
@@ -117,11 +134,18 @@ class TickRecords {
     std::memcpy(row + offset, &value, sizeof(T));
   }
   void put_pair(std::byte* row, std::size_t column, const PairReport& pair) {
-    const double numbers[] = {pair.distance, pair.lower, pair.upper, pair.swept_lower,
-                              pair.closing_speed};
+    const double numbers[] = {pair.distance,    pair.lower,      pair.upper,
+                              pair.swept_lower, pair.stop_lower, pair.closing_speed};
     for (std::size_t i = 0; i < by_pair_.size(); ++i)
       put(row, by_pair_[i] + 8 * column, numbers[i]);
     put(row, status_ + column, static_cast<std::uint8_t>(pair.status));
+  }
+  void put_stop(std::byte* row, std::size_t column, const RobotStop& stop) {
+    const double numbers[] = {stop.scaling, stop.clearance, stop.share, stop.time};
+    for (std::size_t i = 0; i < by_stop_.size(); ++i)
+      put(row, by_stop_[i] + 8 * column, numbers[i]);
+    put(row, stop_pair_ + 4 * column, stop.pair == kNoPair ? -1 : pair_of_[stop.pair]);
+    put(row, stop_validity_ + column, static_cast<std::uint8_t>(stop.validity));
   }
   [[nodiscard]] std::vector<Field> fields_with_names() const {
     std::vector<Field> fields;
@@ -129,7 +153,7 @@ class TickRecords {
     return fields;
   }
 
-  // Finds the columns of this scene's pairs and zones.
+  // Finds the columns of this scene's pairs, zones and robots.
   void follow(const Scene& now) {
     revision_ = now.revision;
     std::map<Names, std::int32_t> all;
@@ -138,6 +162,12 @@ class TickRecords {
     columns_.clear();
     pair_of_.clear();
     zone_columns_.clear();
+    stop_columns_.clear();
+    for (const Robot& robot : now.robots) {
+      const auto found = std::ranges::find(stops_, robot.name);
+      stop_columns_.push_back(
+          found == stops_.end() ? -1 : static_cast<std::int32_t>(found - stops_.begin()));
+    }
     for (const ObjectPair& pair : now.pairs) {
       const Names key = names(now, pair);
       const auto found = all.find(key);
@@ -166,11 +196,14 @@ class TickRecords {
   std::map<Names, std::size_t> column_of_;  // of published pairs
   std::size_t pairs_ = 0, zones_ = 0, size_ = 0;
   std::vector<Place> layout_;
-  std::vector<std::size_t> by_pair_;
+  std::vector<std::string> stops_;  // the robots
+  std::vector<std::size_t> by_pair_, by_stop_;
   std::size_t minimum_pair_ = 0, status_ = 0, zone_active_ = 0, certified_ = 0;
+  std::size_t stop_pair_ = 0, stop_validity_ = 0;
 
   std::uint64_t revision_ = 0;
-  std::vector<std::int32_t> columns_, pair_of_, zone_columns_;  // of the scene in force; -1: none
+  // Of the scene in force; -1: none.
+  std::vector<std::int32_t> columns_, pair_of_, zone_columns_, stop_columns_;
 
   std::int64_t first_ns_ = 0;
   std::vector<std::byte> bytes_;
@@ -322,8 +355,10 @@ joints: positions that the recording lacks, by name. evaluate_all: every pair in
 
 Fields: cycle, now_ns, time_s (since the first record); lower_all and swept_lower_all, lower bounds of
 all pairs; minimum_distance, minimum_lower, minimum_upper, minimum_certified and minimum_pair (an index
-into Cell.pairs, or -1); by published pair, distance, lower, upper, swept_lower, closing_speed and
-status (PairStatus); by zone, zone_active. m, m/s. Unknown bounds are infinite, other figures NaN.
+into Cell.pairs, or -1); by published pair, distance, lower, upper, swept_lower, stop_lower,
+closing_speed and status (PairStatus); by zone, zone_active; by robot of the cell with `stopping`,
+stop_scaling, stop_clearance, stop_share, stop_time, stop_pair (an index, or -1) and stop_validity.
+m, m/s, s. Unknown bounds are infinite, other figures NaN.
 
 Raises ReplayError if it cannot be run; warns of a damaged recording. Releases the interpreter's lock;
 Ctrl-C ends it.)");
