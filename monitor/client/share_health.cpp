@@ -19,10 +19,11 @@ namespace {
 
 using Message = clearance_msg_Health;
 
-constexpr std::array kLargest = {&Message::tick_p50_us,        &Message::tick_p999_us,
-                                 &Message::tick_max_us,        &Message::wakeup_p50_us,
-                                 &Message::wakeup_p999_us,     &Message::wakeup_max_us,
-                                 &Message::tick_second_max_us, &Message::wakeup_second_max_us};
+constexpr std::array kLargest = {
+    &Message::tick_p50_us,        &Message::tick_p999_us,        &Message::tick_max_us,
+    &Message::wakeup_p50_us,      &Message::wakeup_p999_us,      &Message::wakeup_max_us,
+    &Message::response_p50_us,    &Message::response_p999_us,    &Message::response_max_us,
+    &Message::tick_second_max_us, &Message::wakeup_second_max_us};
 constexpr std::array kSums = {&Message::clock_steps,     &Message::overruns,
                               &Message::skipped_cycles,  &Message::batches,
                               &Message::lost_batches,    &Message::undecodable_samples,

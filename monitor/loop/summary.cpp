@@ -20,10 +20,12 @@ std::string run_summary(const RunStatistics& statistics, double seconds,
   return fmt::format(
       "{} in {:.2f} s, {}, {}, {} dropped\n"
       "tick     {}\n"
-      "wake-up  {}\n",
+      "wake-up  {}\n"
+      "response {}, from when an input came\n",
       counted(statistics.cycle, "tick"), seconds, counted(statistics.overruns, "overrun"),
       counted(statistics.skipped_cycles, "skipped cycle"), counted(dropped_reports, "report"),
-      percentiles(statistics.tick), percentiles(statistics.wakeup));
+      percentiles(statistics.tick), percentiles(statistics.wakeup),
+      percentiles(statistics.response));
 }
 
 // Says "none" when no pair was ever evaluated, so that no number stands for nothing.

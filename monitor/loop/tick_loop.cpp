@@ -47,6 +47,7 @@ void TickLoop::run(const std::atomic<bool>& stop) noexcept {
 
     statistics_.wakeup.add(started - deadline);
     statistics_.tick.add(ended - started);
+    if (oldest_came_ns_ != 0) statistics_.response.add(ended - oldest_came_ns_);
     statistics_.wakeup_second_max_ns =
         std::max(statistics_.wakeup_second_max_ns, started - deadline);
     statistics_.tick_second_max_ns = std::max(statistics_.tick_second_max_ns, ended - started);
@@ -198,6 +199,7 @@ void TickLoop::change_scene(SceneOffer& offer) noexcept {
 // Batches are used whole: a batch that does not fit waits for the next tick.
 void TickLoop::take_in() noexcept {
   used_count_ = 0;
+  oldest_came_ns_ = 0;
   for (;;) {
     if (waiting_ == nullptr) waiting_ = source_.next();
     if (waiting_ == nullptr) return;
@@ -213,6 +215,7 @@ void TickLoop::take_in() noexcept {
 void TickLoop::use(const PoseBatch& batch) noexcept {
   note_source(batch);
   note_phase(batch);
+  if (oldest_came_ns_ == 0) oldest_came_ns_ = batch.came_ns;  // they come in their order
   if (state_.use(batch)) return;
   for (const PoseSample& sample : batch.samples)
     state_.monitor().refuse(sample.object, Reject::kWrongRevision);

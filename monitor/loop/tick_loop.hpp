@@ -121,6 +121,7 @@ class TickLoop {
   std::int64_t period_ns_;
   std::uint64_t ticks_a_second_;
   PhaseLock phase_;
+  std::int64_t oldest_came_ns_ = 0;  // of the batches of this tick; 0: none is known
 
   const PoseBatch* waiting_ = nullptr;  // taken from the source, but did not fit into the last tick
   std::array<SourceUse, kMaxSources> used_;

@@ -19,12 +19,14 @@ constexpr double kUsPerNs = 1e-3;
 void fill_loop(const LoopStatistics& statistics, clearance_msg_Health& out) {
   out.cycle = statistics.cycle;
   out.now_ns = statistics.now_ns;
-  out.tick_p50_us = kUsPerNs * static_cast<double>(statistics.tick.percentile_ns(0.5));
-  out.tick_p999_us = kUsPerNs * static_cast<double>(statistics.tick.percentile_ns(0.999));
-  out.tick_max_us = kUsPerNs * static_cast<double>(statistics.tick.max_ns());
-  out.wakeup_p50_us = kUsPerNs * static_cast<double>(statistics.wakeup.percentile_ns(0.5));
-  out.wakeup_p999_us = kUsPerNs * static_cast<double>(statistics.wakeup.percentile_ns(0.999));
-  out.wakeup_max_us = kUsPerNs * static_cast<double>(statistics.wakeup.max_ns());
+  const auto fill = [](const Histogram& from, double& p50, double& p999, double& max) {
+    p50 = kUsPerNs * static_cast<double>(from.percentile_ns(0.5));
+    p999 = kUsPerNs * static_cast<double>(from.percentile_ns(0.999));
+    max = kUsPerNs * static_cast<double>(from.max_ns());
+  };
+  fill(statistics.tick, out.tick_p50_us, out.tick_p999_us, out.tick_max_us);
+  fill(statistics.wakeup, out.wakeup_p50_us, out.wakeup_p999_us, out.wakeup_max_us);
+  fill(statistics.response, out.response_p50_us, out.response_p999_us, out.response_max_us);
   out.tick_second_max_us = kUsPerNs * static_cast<double>(statistics.tick_second_max_ns);
   out.wakeup_second_max_us = kUsPerNs * static_cast<double>(statistics.wakeup_second_max_ns);
   out.clock_steps = statistics.clock_steps;

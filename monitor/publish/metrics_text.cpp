@@ -90,6 +90,9 @@ void add_loop(const MetricsSource& source, Families& out) {
                 source.statistics->tick);
   out.histogram("wakeup_delay_seconds", "Delays of the tick thread's wake-ups.",
                 source.statistics->wakeup);
+  out.histogram("response_seconds",
+                "From when the oldest input of a tick came to the handing over of the report.",
+                source.statistics->response);
 }
 
 // An input that has never come has no age. Links follow from joints.

@@ -201,6 +201,10 @@ void add_health(std::vector<Line>& lines, const Feed& feed, const ViewContext& c
       .add(fmt::format("p50 {:.1f} us  p99.9 {:.1f} us  max {:.1f} us", health->wakeup_p50_us,
                        health->wakeup_p999_us, health->wakeup_max_us));
   lines.emplace_back(width)
+      .add("response  ", Style::kDim)
+      .add(fmt::format("p50 {:.1f} us  p99.9 {:.1f} us  max {:.1f} us", health->response_p50_us,
+                       health->response_p999_us, health->response_max_us));
+  lines.emplace_back(width)
       .add("reports   ", Style::kDim)
       .add(fmt::format("{:.0f} a second  {} missed here", context.reports_a_second, feed.missed()));
 }

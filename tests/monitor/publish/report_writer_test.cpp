@@ -191,6 +191,7 @@ TEST(ReportWriter, SaysHowTheDaemonIs) {
   statistics.skipped_cycles = 4;
   for (int i = 0; i < 999; ++i) statistics.tick.add(20'000);
   statistics.tick.add(90'000);
+  statistics.response.add(120'000);
   statistics.rejected[0][static_cast<std::size_t>(Reject::kNotUnit)] = 5;
   statistics.rejected_total[static_cast<std::size_t>(Reject::kNotUnit)] = 5;
   statistics.refused_poses[0].cause = Reject::kNotUnit;
@@ -209,6 +210,7 @@ TEST(ReportWriter, SaysHowTheDaemonIs) {
   EXPECT_EQ(health->skipped_cycles, 4u);
   EXPECT_NEAR(health->tick_p50_us, 20.0, 20.0 / 64);
   EXPECT_EQ(health->tick_max_us, 90.0);
+  EXPECT_EQ(health->response_max_us, 120.0);
   EXPECT_STREQ(health->recording, "run.mcap was deleted");
   EXPECT_EQ(health->recording_missing, 12u);
   ASSERT_EQ(health->rejected._length, 2u);

@@ -94,6 +94,9 @@ py::dict health_of(const clearance_msg_Health& m) {
   all["wakeup_p50_us"] = m.wakeup_p50_us;
   all["wakeup_p999_us"] = m.wakeup_p999_us;
   all["wakeup_max_us"] = m.wakeup_max_us;
+  all["response_p50_us"] = m.response_p50_us;
+  all["response_p999_us"] = m.response_p999_us;
+  all["response_max_us"] = m.response_max_us;
   all["tick_second_max_us"] = m.tick_second_max_us;
   all["wakeup_second_max_us"] = m.wakeup_second_max_us;
   all["overruns"] = m.overruns;
