@@ -57,6 +57,7 @@ class Hall:
 
     def __enter__(self):
         self.connection = clearance.Connection(domain=DOMAIN, partition=self.network[-1])
+        self.poses = clearance.PoseWriter("spheres", ["person", "robot"], self.connection)
         self.start_daemon()
         return self
 
@@ -64,29 +65,32 @@ class Hall:
         self.poses.close()
         self.daemon.kill()
         self.daemon.wait()
-        self.connection.close()
 
     def start_daemon(self):
         self.daemon = subprocess.Popen([BIN / "clearanced", self.cell, *self.network],
                                        stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
-        self.poses = clearance.PoseWriter("spheres", ["person", "robot"], self.connection)
         assert self.poses.wait_heard(LIMIT_S)
 
     def kill_daemon(self):
         self.daemon.kill()
         self.daemon.wait()
-        self.poses.close()
 
     def place(self, x):
         """Both stand still, with their centres x metres apart."""
-        self.poses.write([[0, 0, 0, 0, 0, 0, 1], [x, 0, 0, 0, 0, 0, 1]], [[0] * 6] * 2)
+        self.x = x
+        self.send()
+
+    def send(self):
+        """Says it again: a daemon that was started may have missed it."""
+        self.poses.write([[0, 0, 0, 0, 0, 0, 1], [self.x, 0, 0, 0, 0, 0, 1]], [[0] * 6] * 2)
 
 
 class Plc:
     """clearance-plc on a free port, and a controller that reads all its registers at once."""
 
-    def __init__(self, hall, *arguments, cell=None):
-        self.command = [BIN / "clearance-plc", cell or hall.cell, *hall.network, *arguments]
+    def __init__(self, hall, cell=None, network=None):
+        self.hall = hall
+        self.command = [BIN / "clearance-plc", cell or hall.cell, *(network or hall.network)]
         self.log = hall.folder / (uuid.uuid4().hex + ".log")
 
     def __enter__(self):
@@ -105,7 +109,12 @@ class Plc:
         self.end()
 
     def eventually(self, is_so):
-        return eventually(lambda: (lambda row: row if is_so(row) else None)(self.read()))
+        def row():
+            self.hall.send()
+            found = self.read()
+            return found if is_so(found) else None
+
+        return eventually(row)
 
     def expect_fail_safe(self, seen):
         """All figures are at their safe ends now, and those of the first block were when `good` was seen to be 0."""

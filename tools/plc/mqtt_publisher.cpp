@@ -119,7 +119,7 @@ MqttPublisher::~MqttPublisher() {
 // The reason that a broker gives is better than that of the end of the connection behind it.
 void MqttPublisher::tell(const std::string& state, bool is_first_reason) {
   const std::lock_guard lock(mutex_);
-  if (told_ == state || (is_first_reason && !told_.empty())) return;
+  if (told_ == state || (is_first_reason && told_ && !told_->empty())) return;
   told_ = state;
   const std::string broker = fmt::format("{}:{}", settings_.mqtt.host, settings_.mqtt.port);
   if (state.empty())

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -46,8 +47,8 @@ class MqttPublisher {
   std::string state_;
   std::int64_t repeat_ns_ = 0;  // when everything is sent again
   std::atomic<bool> is_connected_ = false, is_new_ = false;
-  std::mutex mutex_;  // of told_, which both threads write
-  std::string told_;  // why the broker is away, as logged last; empty: it is not
+  std::mutex mutex_;                 // of told_, which both threads write
+  std::optional<std::string> told_;  // why the broker is away, as logged last; empty: it is not
 };
 
 // "clearance/zone/people/clear". Characters of names that topics reserve are written as %2F.
