@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <chrono>
+#include <condition_variable>
 #include <stdexcept>
 #include <variant>
 
@@ -98,22 +100,40 @@ MqttPublisher::MqttPublisher(const PlcSettings& settings)
   mosquitto_connect_callback_set(client, [](mosquitto*, void* self, int result) {
     static_cast<MqttPublisher*>(self)->on_connect(result);
   });
-  mosquitto_disconnect_callback_set(client, [](mosquitto*, void* self, int reason) {
-    static_cast<MqttPublisher*>(self)->on_disconnect(reason);
-  });
-  mosquitto_reconnect_delay_set(client, 1, 5, false);
-  const int result = mosquitto_connect_async(client, mqtt.host.c_str(), mqtt.port, kKeepAlive_s);
-  if (result != MOSQ_ERR_SUCCESS) on_disconnect(result);
-  require(mosquitto_loop_start(client), "to start a thread");
+  mosquitto_threaded_set(client, true);
+  thread_ = std::jthread([this](const std::stop_token& stop) { run(stop); });
 }
 
 // A program that ends in order has no last will, so it says the same.
 MqttPublisher::~MqttPublisher() {
   if (is_connected_) say_fail_safe();
   mosquitto_disconnect(client_.get());
-  mosquitto_loop_stop(client_.get(), false);
+  thread_ = {};  // asks it to stop, and waits
   client_.reset();
   mosquitto_lib_cleanup();
+}
+
+// mosquitto_loop_start() gives up after a fault of TLS or of a name, which may pass. At the end,
+// what is queued still leaves, if the broker takes it at once.
+void MqttPublisher::run(const std::stop_token& stop) {
+  constexpr int kWait_ms = 10, kLastLoops = 50;
+  constexpr std::chrono::milliseconds kRetry(1000);
+  std::mutex mutex;
+  std::condition_variable_any waits;
+  int result = mosquitto_connect_async(client_.get(), settings_.mqtt.host.c_str(),
+                                       settings_.mqtt.port, kKeepAlive_s);
+  for (int last = 0; last < kLastLoops;) {
+    while (result == MOSQ_ERR_SUCCESS && last < kLastLoops) {
+      result = mosquitto_loop(client_.get(), kWait_ms, 1);
+      if (stop.stop_requested()) ++last;
+    }
+    is_connected_ = false;
+    if (stop.stop_requested()) return;
+    tell(mosquitto_strerror(result), true);
+    std::unique_lock lock(mutex);
+    if (waits.wait_for(lock, stop, kRetry, [] { return false; }) || stop.stop_requested()) return;
+    result = mosquitto_reconnect_async(client_.get());
+  }
 }
 
 // The reason that a broker gives is better than that of the end of the connection behind it.
@@ -134,11 +154,6 @@ void MqttPublisher::on_connect(int result) {
   is_new_ = true;
   is_connected_ = true;
   tell("");
-}
-
-void MqttPublisher::on_disconnect(int reason) {
-  is_connected_ = false;
-  if (reason != 0) tell(mosquitto_strerror(reason), true);
 }
 
 void MqttPublisher::say_fail_safe() { send(state_topic_, kFailSafe, true); }

@@ -11,6 +11,7 @@
 #include <mutex>
 #include <optional>
 #include <string>
+#include <thread>
 #include <vector>
 
 #include <mosquitto.h>
@@ -34,8 +35,8 @@ class MqttPublisher {
   void publish(const HeldFigures& figures, const RegisterTable& table, std::int64_t now_ns);
 
  private:
+  void run(const std::stop_token& stop);
   void on_connect(int result);
-  void on_disconnect(int reason);
   void tell(const std::string& state, bool is_first_reason = false);
   void say_fail_safe();
   void send(const std::string& topic, const std::string& text, bool retained = false);
@@ -49,6 +50,7 @@ class MqttPublisher {
   std::atomic<bool> is_connected_ = false, is_new_ = false;
   std::mutex mutex_;                 // of told_, which both threads write
   std::optional<std::string> told_;  // why the broker is away, as logged last; empty: it is not
+  std::jthread thread_;              // of run(); it uses all of the above
 };
 
 // "clearance/zone/people/clear". Characters of names that topics reserve are written as %2F.
