@@ -132,8 +132,9 @@ TEST(ManualOfTheDaemon, CompletionOffersTheValuesOfAnOptionThatHasOnlySome) {
 
 INSTANTIATE_TEST_SUITE_P(Every, Manual,
                          testing::Values("clearanced", "clearance-ask", "clearance-distance",
-                                         "clearance-plc", "clearance-record", "clearance-replay", "clearance-robot",
-                                         "clearance-scene", "clearance-view", "clearance-watch"),
+                                         "clearance-plc", "clearance-record", "clearance-replay",
+                                         "clearance-robot", "clearance-scene", "clearance-view",
+                                         "clearance-watch"),
                          [](const auto& program) {
                            std::string name = program.param;
                            std::erase(name, '-');
