@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "config/cell/command_settings.hpp"
+#include "config/cell/plc_settings.hpp"
 #include "config/cell/ros_settings.hpp"
 #include "config/cell/shares.hpp"
 #include "config/cell/simulation.hpp"
@@ -31,6 +32,7 @@ struct Cell {
   RosSettings ros = {};
   CommandSettings commands = {};
   QuestionSettings questions = {};
+  PlcSettings plc = {};
   AddedCapacity capacity = {};
   std::string partner = {};    // the daemon's name among partners; empty: it has none
   Simulation simulation = {};  // may be empty

@@ -20,6 +20,7 @@
 #include "config/cell/pair_reader.hpp"
 #include "config/cell/partner_reader.hpp"
 #include "config/cell/planning_scene_reader.hpp"
+#include "config/cell/plc_reader.hpp"
 #include "config/cell/published_pairs.hpp"
 #include "config/cell/robot_reader.hpp"
 #include "config/cell/ros_reader.hpp"
@@ -36,11 +37,9 @@
 #include "config/text/file_bytes.hpp"
 #include "config/text/sentences.hpp"
 #include "config/text/spelling.hpp"
-#include "config/yaml/diagnostics.hpp"
 #include "config/yaml/map_reader.hpp"
 #include "config/yaml/quantities.hpp"
 #include "config/yaml/scalar.hpp"
-#include "config/yaml/yaml_node.hpp"
 
 namespace clearance {
 namespace {
@@ -227,6 +226,7 @@ void CellReader::read(const YamlNode& root, Cell& cell) {
   read_objects_and_pairs(map, quantities, cell);
   if (errors_ != nullptr && diagnostics_.empty())
     refuse_large_angles(*errors_, cell.scene, diagnostics_);
+  cell.plc = read_plc(map, file_.parent_path(), cell.scene, diagnostics_);
   map.refuse_unknown_keys();
   refuse_frames_without_a_world(root, cell);
   if (diagnostics_.empty() && !options_.share.empty()) select_share(root, cell);

@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "monitor/interface/log_lines.hpp"
+#include "monitor/interface/plc_log_lines.hpp"
 
 namespace clearance::lines {
 
@@ -138,6 +139,14 @@ inline constexpr std::tuple kAll{kStarted,
                                  kShareLate,
                                  kShareOtherRevision,
                                  kShareOtherDivision,
-                                 kCellNotRead};
+                                 kCellNotRead,
+                                 kPlcStarted,
+                                 kPlcGood,
+                                 kPlcFailSafe,
+                                 kPlcMisfit,
+                                 kPlcWriteRefused,
+                                 kPlcClientDropped,
+                                 kMqttConnected,
+                                 kMqttAway};
 
 }  // namespace clearance::lines

@@ -132,8 +132,9 @@ TEST(ManualOfTheDaemon, CompletionOffersTheValuesOfAnOptionThatHasOnlySome) {
 
 INSTANTIATE_TEST_SUITE_P(Every, Manual,
                          testing::Values("clearanced", "clearance-ask", "clearance-distance",
-                                         "clearance-record", "clearance-replay", "clearance-robot",
-                                         "clearance-scene", "clearance-view", "clearance-watch"),
+                                         "clearance-plc", "clearance-record", "clearance-replay",
+                                         "clearance-robot", "clearance-scene", "clearance-view",
+                                         "clearance-watch"),
                          [](const auto& program) {
                            std::string name = program.param;
                            std::erase(name, '-');
@@ -143,7 +144,7 @@ INSTANTIATE_TEST_SUITE_P(Every, Manual,
 // tools/demo reads its options, and stops at the cell that is not there, before it builds anything.
 TEST(Demo, TakesEachOfItsOptionsAndOneOfThemOnly) {
   const std::string demo = places::sources() + "/tools/demo";
-  for (const char* option : {"--avoid", "--pick", "--ask", "--camera"}) {
+  for (const char* option : {"--avoid", "--pick", "--ask", "--camera", "--plc"}) {
     ChildProcess child("/usr/bin/env", {"bash", demo, option, "/nowhere.yaml"});
     EXPECT_EQ(child.wait(), 2);
     EXPECT_TRUE(child.wrote("cannot read /nowhere.yaml")) << option << '\n' << child.output();

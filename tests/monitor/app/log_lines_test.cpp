@@ -50,7 +50,9 @@ TEST(LogLines, AreWordedAsInTheGoldenFile) {
 }
 
 TEST(LogLines, AreAllInTheList) {
-  const std::string header = content(test::places::sources() + "/monitor/interface/log_lines.hpp");
+  const std::string folder = test::places::sources() + "/monitor/interface/";
+  const std::string header =
+      content(folder + "log_lines.hpp") + content(folder + "plc_log_lines.hpp");
   std::size_t entries = 0;
   for (std::size_t at = 0; (at = header.find("constexpr LogLine<", at)) != std::string::npos;
        ++at) {
