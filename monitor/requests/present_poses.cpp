@@ -40,6 +40,13 @@ std::optional<std::string> root_above(const std::string& link, const Scene& scen
   return std::nullopt;
 }
 
+// Tells it of a link without shapes by the other links.
+bool is_absent(const Robot& robot, const Scene& scene) {
+  return std::ranges::any_of(robot.links, [&](const RobotLink& link) {
+    return link.object != RobotLink::kNoObject && scene.objects[link.object].absent;
+  });
+}
+
 // Tells whether the base of the robot with this root is in both scenes the same.
 bool has_same_base(const std::string& root, const Scene& a, const Scene& b) {
   const auto in_a = carrier_of(root, a), in_b = carrier_of(root, b);
@@ -102,9 +109,14 @@ std::optional<PresentPoses> present_poses(const std::vector<std::string>& names,
   }
   PresentPoses poses;
   if (bodies.empty()) return poses;
+  const std::vector<SceneBody> asked = bodies;
   PoseQuestion question(std::move(bodies));
   if (!loop.ask(question, loop_ended)) return std::nullopt;
-  for (std::size_t i = 0; i < known.size(); ++i) poses[known[i]] = question.poses()[i];
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    poses[known[i]] = question.poses()[i];
+    if (asked[i].is_link && is_absent(scene.robots[asked[i].robot], scene))
+      poses[known[i]] = {.state = PresentPose::State::kAbsent};
+  }
   return poses;
 }
 

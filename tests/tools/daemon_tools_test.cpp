@@ -6,7 +6,10 @@
 
 #include <atomic>
 #include <chrono>
+#include <span>
+#include <string>
 #include <thread>
+#include <vector>
 
 #include "monitor/client/client.hpp"
 #include "monitor/client/commands.hpp"
@@ -17,7 +20,10 @@
 namespace clearance::test {
 namespace {
 
+using testing::Contains;
 using testing::HasSubstr;
+using testing::Not;
+using testing::StartsWith;
 
 // Sends the joints of the arm and of both tools, whoever carries them.
 class ToolsInMotion {
@@ -49,11 +55,12 @@ class ToolsInMotion {
 class DaemonTools : public RunsPrograms {
  protected:
   DaemonTools() {
-    std::string text = kToolCell;
     text.replace(text.find("objects:"), 0,
                  "rate_hz: 200\ndefaults: {age_limit_ms: 10000, max_speed: 1}\n");
     write_tools(folder, text);
   }
+
+  std::string text = kToolCell;
 };
 
 TEST_F(DaemonTools, ThatChangeAreReplayedToTheSameBits) {
@@ -86,6 +93,28 @@ TEST_F(DaemonTools, ThatChangeAreReplayedToTheSameBits) {
   }
   EXPECT_EQ(run(kReplay, {"check", path("run.mcap"), "--compare"}), 0) << output;
   EXPECT_THAT(output, HasSubstr("ticks"));
+}
+
+TEST_F(DaemonTools, ThatAreAbsentAreNotMissed) {
+  const std::string stands = "joints: {finger: {position: 0.01}}";
+  text.replace(text.find(stands), stands.size(), "absent: true");
+  write_text(folder / "cell.yaml", text);
+  const DdsOptions dds = own_dds();
+  ChildProcess daemon(kDaemon, with({path("cell.yaml")}, dds_arguments(dds)));
+  client::Connection connection(dds);
+  client::Health health(connection);
+  ASSERT_TRUE(eventually([&] { return health.update() && health.message() != nullptr; }))
+      << daemon.output();
+  const auto names_of = [](const auto& entries) {
+    std::vector<std::string> names;
+    for (const auto& entry : std::span(entries._buffer, entries._length))
+      names.emplace_back(entry.name);
+    return names;
+  };
+  EXPECT_THAT(names_of(health.message()->inputs), Contains("person"));
+  EXPECT_THAT(names_of(health.message()->inputs), Not(Contains(StartsWith("g_"))));
+  EXPECT_THAT(names_of(health.message()->joints), Contains("t_tilt"));
+  EXPECT_THAT(names_of(health.message()->joints), Not(Contains(StartsWith("g_"))));
 }
 
 }  // namespace

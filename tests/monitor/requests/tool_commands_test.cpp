@@ -94,6 +94,7 @@ TEST_F(ToolCommands, MakeAToolAbsentAndPresentAgain) {
   EXPECT_FALSE(object("g_palm").absent);
   ASSERT_TRUE(execute({SetAbsent{"torch"}}).done());
   EXPECT_TRUE(object("t_tip").absent);
+  expect_refused({AttachRobot{.robot = "torch", .to = "flange"}}, CommandStatus::kNoPose);
 }
 
 TEST_F(ToolCommands, ChangeOneToolForAnotherInOneList) {

@@ -29,7 +29,7 @@ using test::kTick;
 
 using Names = std::pair<std::string, std::string>;
 
-Names names(const std::string& a, const std::string& b) { return std::minmax(a, b); }
+Names link_pair(const std::string& a, const std::string& b) { return std::minmax(a, b); }
 
 // What the test knows of one tool.
 struct Tool {
@@ -40,12 +40,12 @@ struct Tool {
 };
 
 // The pairs that the descriptions leave out, and those that are rigid, by the names of the cell.
-const std::set<Names> kOfDescriptions = {names("foot", "upper"),     names("upper", "lower"),
-                                         names("lower", "wrist"),    names("g_palm", "g_left"),
-                                         names("g_palm", "g_right"), names("t_neck", "t_tip")};
-const std::set<Names> kWithGripper = {names("wrist", "g_palm"), names("lower", "g_palm"),
-                                      names("wrist", "g_left"), names("wrist", "g_right")};
-const std::set<Names> kWithTorch = {names("wrist", "t_neck")};
+const std::set<Names> kOfDescriptions = {
+    link_pair("foot", "upper"),    link_pair("upper", "lower"),    link_pair("lower", "wrist"),
+    link_pair("g_palm", "g_left"), link_pair("g_palm", "g_right"), link_pair("t_neck", "t_tip")};
+const std::set<Names> kWithGripper = {link_pair("wrist", "g_palm"), link_pair("lower", "g_palm"),
+                                      link_pair("wrist", "g_left"), link_pair("wrist", "g_right")};
+const std::set<Names> kWithTorch = {link_pair("wrist", "t_neck")};
 
 class ToolChange : public testing::Test {
  protected:
@@ -169,7 +169,7 @@ class ToolChange : public testing::Test {
     const auto all = centres();
     for (const auto& [a, unused_a] : all) {
       for (const auto& [b, unused_b] : all) {
-        const Names both = names(a, b);
+        const Names both = link_pair(a, b);
         if (a >= b || kOfDescriptions.contains(both) || (is_fixed(a) && is_fixed(b))) continue;
         if (!gripper_.to.empty() && kWithGripper.contains(both)) continue;
         if (!torch_.to.empty() && kWithTorch.contains(both)) continue;
@@ -189,7 +189,7 @@ class ToolChange : public testing::Test {
       const ObjectPair& objects = scene.pairs[pair.pair];
       const std::string &a = scene.objects[objects.first].name,
                         &b = scene.objects[objects.second].name;
-      found.insert(names(a, b));
+      found.insert(link_pair(a, b));
       if (is_absent(a) || is_absent(b)) {
         EXPECT_EQ(pair.status, PairStatus::kAbsent) << a << " - " << b;
         continue;
