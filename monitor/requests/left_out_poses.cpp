@@ -2,6 +2,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "config/text/spelling.hpp"
@@ -36,6 +37,19 @@ struct MayMove {
 CommandRefusal no_pose(std::size_t change, const std::string& object, std::string reason) {
   return {CommandStatus::kNoPose, change, fmt::format("objects[{}].pose", object),
           std::move(reason)};
+}
+
+// A joint that moves farther within its age limit does not stand, m or rad.
+constexpr double kStands = 1e-3;
+
+// Why a joint cannot stand where it is, as the end of a sentence. Empty: it can.
+std::string why_not_standing(const JointVariable& variable, const PresentJoint& joint) {
+  if (variable.name.find('/') != std::string::npos) return "is one of several of a joint";
+  if (joint.state != PresentPose::State::kUsable) return "is not known now";
+  const double moves = std::abs(joint.velocity) * 1e-9 * static_cast<double>(variable.age_limit_ns);
+  if (moves <= kStands) return "";
+  return std::isnan(moves) ? "has no known velocity"
+                           : fmt::format("moves by {:.4g} a second", joint.velocity);
 }
 
 // A pose that a change leaves out: of this body, in the frame of what carries it, or in the world.
@@ -141,7 +155,8 @@ SceneCommander::Refusal SceneCommander::take_poses(Work& work) {
   return std::nullopt;
 }
 
-// The joints of a robot that is detached stand where they are now.
+// The joints of a robot that is detached stand where they are now. One that moves would be
+// elsewhere by then, and its links for as long as it stands.
 SceneCommander::Refusal SceneCommander::take_positions(Work& work) {
   const Scene& running = changer_.cell().scene;
   for (std::size_t i = 0; i < work.changes.size(); ++i) {
@@ -155,19 +170,15 @@ SceneCommander::Refusal SceneCommander::take_positions(Work& work) {
       const JointVariable& variable = running.variables[v];
       if (variable.robot != place) continue;
       const std::string name = variable.name.substr(robot->prefix.size());
-      const bool is_known = (*joints)[v].state == PresentPose::State::kUsable;
-      const bool has_more = name.find('/') != std::string::npos;
-      if (is_known && !has_more) {
+      const std::string why = why_not_standing(variable, (*joints)[v]);
+      if (why.empty()) {
         detach->joints.push_back({name, (*joints)[v].position});
       } else if (!detach->absent) {
         return CommandRefusal{
             CommandStatus::kNoPose, i, fmt::format("robots[{}].joints", robot->name),
-            has_more ? fmt::format("found '{}', one of several positions of a joint, which cannot "
-                                   "stand; expected powered: true",
-                                   name)
-                     : fmt::format("found that the position of '{}' is not known now; expected "
-                                   "one in the change (joints), or powered: true",
-                                   name)};
+            fmt::format("found that '{}' {}; expected its position in the change (joints), or "
+                        "powered: true",
+                        name, why)};
       }
     }
   }

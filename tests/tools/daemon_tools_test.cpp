@@ -4,11 +4,9 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <atomic>
 #include <chrono>
 #include <span>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "monitor/client/client.hpp"
@@ -16,6 +14,7 @@
 #include "tests/shared/poses.hpp"
 #include "tests/shared/tool_cell.hpp"
 #include "tests/tools/running_cell.hpp"
+#include "tests/tools/tools_in_motion.hpp"
 
 namespace clearance::test {
 namespace {
@@ -24,33 +23,6 @@ using testing::Contains;
 using testing::HasSubstr;
 using testing::Not;
 using testing::StartsWith;
-
-// Sends the joints of the arm and of both tools, whoever carries them.
-class ToolsInMotion {
- public:
-  explicit ToolsInMotion(client::Connection& connection)
-      : joints_(connection, "robot", {"shoulder", "elbow", "roll", "g_finger", "t_tilt"}),
-        thread_([this] { run(); }) {}
-  ~ToolsInMotion() {
-    stop_ = true;
-    thread_.join();
-  }
-  ToolsInMotion(const ToolsInMotion&) = delete;
-  ToolsInMotion& operator=(const ToolsInMotion&) = delete;
-
- private:
-  void run() {
-    for (int step = 0; !stop_; ++step) {
-      const double swing = std::sin(0.005 * step);
-      joints_.write({0.3 * swing, -0.5, 0.2 * swing, 0.01, 0.2 + 0.1 * swing});
-      std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    }
-  }
-
-  client::JointWriter joints_;
-  std::atomic<bool> stop_{false};
-  std::thread thread_;
-};
 
 class DaemonTools : public RunsPrograms {
  protected:
@@ -74,15 +46,7 @@ TEST_F(DaemonTools, ThatChangeAreReplayedToTheSameBits) {
     client::Commands commands(connection, "planner");
     std::uint64_t before = 0;
     for (int i = 0; i < kTimes; ++i) {
-      const bool is_gripper = i % 2 == 0;
-      std::vector<CellChange> changes{AttachRobot{.robot = is_gripper ? "gripper" : "torch",
-                                                  .to = "flange",
-                                                  .carrier_from_root = Pose{},
-                                                  .far = true}};
-      if (i > 0)
-        changes.insert(changes.begin(), DetachRobot{.robot = is_gripper ? "torch" : "gripper",
-                                                    .absent = i % 3 == 0});
-      const auto result = commands.send(changes, {}, std::chrono::seconds(20));
+      const auto result = commands.send(next_tool(i), {}, std::chrono::seconds(20));
       ASSERT_TRUE(result) << daemon.output();
       ASSERT_TRUE(result->done()) << i << ": " << result->path << ": " << result->reason;
       EXPECT_GT(result->in_force_from, before);
@@ -103,8 +67,10 @@ TEST_F(DaemonTools, ThatAreAbsentAreNotMissed) {
   ChildProcess daemon(kDaemon, with({path("cell.yaml")}, dds_arguments(dds)));
   client::Connection connection(dds);
   client::Health health(connection);
-  ASSERT_TRUE(eventually([&] { return health.update() && health.message() != nullptr; }))
-      << daemon.output();
+  ASSERT_TRUE(eventually([&] {
+    health.update();
+    return health.message() != nullptr;
+  })) << daemon.output();
   const auto names_of = [](const auto& entries) {
     std::vector<std::string> names;
     for (const auto& entry : std::span(entries._buffer, entries._length))

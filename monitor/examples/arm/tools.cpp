@@ -263,7 +263,9 @@ class Arm {
   // The position is stated, since the last one that was sent may not be in use yet.
   bool detach(std::size_t tool) {
     const Tool& of = tools_[tool];
-    return change(DetachRobot{.robot = scene_.robots[of.robot].name, .world_from_root = of.dock},
+    return change(DetachRobot{.robot = scene_.robots[of.robot].name,
+                              .world_from_root = of.dock,
+                              .joints = {{scene_.variables[of.variable].name, of.at_rest}}},
                   nullptr);
   }
 

@@ -18,7 +18,7 @@ Eigen::Isometry3d as_matrix(const Pose& pose) {
 }
 
 void expect_place(const Pose& pose, const Eigen::Isometry3d& expected) {
-  EXPECT_LT((as_matrix(pose).as_matrix() - expected.as_matrix()).cwiseAbs().maxCoeff(), 1e-12);
+  EXPECT_LT((as_matrix(pose).matrix() - expected.matrix()).cwiseAbs().maxCoeff(), 1e-12);
 }
 
 const Pose kDetachedAt = {{0.5, -1.5, 0.25}, test::turned({1.0, 2.0, 3.0}, 0.7)};

@@ -72,6 +72,25 @@ TEST_F(ToolCommands, DetachAToolWhereItIsAndItsJointsStandThere) {
   EXPECT_THAT(object("g_left").groups, testing::ElementsAre("gripper"));
 }
 
+TEST_F(ToolCommands, AreRefusedWhileAJointThatIsToStandMoves) {
+  begin();
+  attach();
+  std::atomic<bool> is_open{false};
+  std::thread opening([&] {
+    for (double finger = 0.01; finger < 0.04 && !is_open; finger += 5e-5) {
+      poses->put_joints({in_dock_.shoulder, in_dock_.elbow, in_dock_.roll, finger});
+      std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    }
+  });
+  CommandResult result;
+  for (int i = 0; i < 100 && result.status == CommandStatus::kDone; ++i)
+    result = execute(Command{.dry_run = true, .changes = {DetachRobot{.robot = "gripper"}}});
+  is_open = true;
+  opening.join();
+  EXPECT_EQ(result.status, CommandStatus::kNoPose) << result.reason;
+  EXPECT_THAT(result.reason, HasSubstr("found that 'finger' moves by"));
+}
+
 TEST_F(ToolCommands, DetachAToolWithPowerWhoseJointsAreReadOn) {
   begin();
   attach();
