@@ -13,7 +13,7 @@
 
 namespace clearance::test {
 
-// Sends the joints of the arm and of both tools, whoever carries them.
+// Sends the joints of a moving arm and of both tools, which stand, whoever carries them.
 class ToolsInMotion {
  public:
   explicit ToolsInMotion(client::Connection& connection)
@@ -30,7 +30,7 @@ class ToolsInMotion {
   void run() {
     for (int step = 0; !stop_; ++step) {
       const double swing = std::sin(0.005 * step);
-      joints_.write({0.3 * swing, -0.5, 0.2 * swing, 0.01, 0.2 + 0.1 * swing});
+      joints_.write({{0.3 * swing, -0.5, 0.2 * swing, 0.01, 0.2}});
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
   }
