@@ -44,7 +44,7 @@ class AttachmentReader {
   struct Carrier {
     RobotBase base;
     std::optional<std::uint32_t> object;
-    std::string robot;  // the group of a link without shapes
+    std::optional<std::uint32_t> robot;  // of a link
   };
   enum class Progress : std::uint8_t { kWaits, kBegun, kDone };
   // Attaches this one, unless that was done, after the attached object that carries it.
@@ -101,7 +101,7 @@ std::optional<AttachmentReader::Carrier> AttachmentReader::carrier(const YamlNod
   if (const auto link = links_.find(*name); link != links_.end()) {
     const auto [robot, index] = link->second;
     const RobotLink& of = robots_.robots[robot].links[index];
-    found.robot = robots_.robots[robot].name;
+    found.robot = robot;
     if (of.object != RobotLink::kNoObject) found.object = of.object;
     if (const auto place = robots_.at_rest.find(*name); place != robots_.at_rest.end()) {
       found.base.base_from_root = place->second;
@@ -145,7 +145,15 @@ void AttachmentReader::be_carried(const Carrier& carrier, Object& object) {
     object.age_limit_ns = by.age_limit_ns;
     object.may_jump = by.may_jump;
   } else {
-    groups = {carrier.robot};
+    // A link without shapes has what the others of its robot have.
+    const Robot& robot = robots_.robots[*carrier.robot];
+    const auto shaped = std::ranges::find_if(
+        robot.links, [](const RobotLink& link) { return link.object != RobotLink::kNoObject; });
+    groups = {robot.name};
+    if (shaped != robot.links.end()) {
+      groups = list_.objects[shaped->object].groups;
+      object.absent = object.absent || list_.objects[shaped->object].absent;
+    }
   }
   for (const std::string& group : groups) {
     if (std::ranges::find(object.groups, group) == object.groups.end())

@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 #include "config/cell/object_reader.hpp"
 #include "config/text/sentences.hpp"
 #include "config/text/spelling.hpp"
@@ -38,6 +40,18 @@ void read_limits(const YamlNode& node, Diagnostics& diagnostics,
   of_joint.front()->upper = *upper;
 }
 
+void read_position(const YamlNode& node, Diagnostics& diagnostics,
+                   const std::vector<JointVariable*>& of_joint) {
+  const auto position = read_number(node, kPositions, "a position in rad or m", diagnostics);
+  if (position && of_joint.size() == 1) {
+    of_joint.front()->held = *position;
+  } else if (position) {
+    diagnostics.add(node, fmt::format("found the position of a joint with {}; expected it of a "
+                                      "joint with one",
+                                      counted(of_joint.size(), "position")));
+  }
+}
+
 void read_joint(const YamlNode& node, const Quantities& quantities,
                 const std::vector<JointVariable*>& of_joint) {
   MapReader map(node, "a joint", quantities.diagnostics());
@@ -65,6 +79,8 @@ void read_joint(const YamlNode& node, const Quantities& quantities,
   }
   if (const YamlNode* limits = map.optional("limits"))
     read_limits(*limits, quantities.diagnostics(), of_joint);
+  if (const YamlNode* position = map.optional("position"))
+    read_position(*position, quantities.diagnostics(), of_joint);
   map.refuse_unknown_keys();
 }
 
@@ -98,6 +114,18 @@ void read_joints(const YamlNode& node, const std::string& prefix, const Quantiti
     } else {
       read_joint(entry.value, quantities, of_joint);
     }
+  }
+}
+
+void refuse_positions_outside(const YamlNode& node, std::span<const JointVariable> variables,
+                              Diagnostics& diagnostics) {
+  for (const JointVariable& variable : variables) {
+    const double beyond = std::max(variable.lower - variable.held, variable.held - variable.upper);
+    if (!variable.is_held() || beyond <= variable.limit_tolerance) continue;
+    diagnostics.add(node,
+                    fmt::format("found the position {} of '{}'; expected one within its "
+                                "limits, from {} to {}",
+                                variable.held, variable.name, variable.lower, variable.upper));
   }
 }
 

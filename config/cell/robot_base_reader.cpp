@@ -144,6 +144,23 @@ StatedBase read_robot_base(const YamlNode& node, const std::vector<Robot>& robot
   return BaseReader(robots, at_rest, objects, quantities).read(node);
 }
 
+RobotBase read_robot_attachment(const YamlNode& node, const std::vector<Robot>& robots,
+                                const PosesAtRest& at_rest, const ObjectList& objects,
+                                const Quantities& quantities) {
+  RobotBase base;
+  MapReader map(node, "what a robot is attached to", quantities.diagnostics());
+  const YamlNode* to = map.required("to");
+  if (const YamlNode* pose = map.optional("pose"))
+    base.base_from_root = quantities.pose(*pose).value_or(Pose{});
+  map.refuse_unknown_keys();
+  if (to != nullptr) {
+    read_what_carries(*to, robots, at_rest, objects,
+                      "a link of a robot that stands before this one, or an object",
+                      quantities.diagnostics(), base);
+  }
+  return base;
+}
+
 void limit_base(const StatedBase& stated, std::vector<JointVariable>& variables) {
   constexpr std::uint32_t kFirstOfQuaternion = 3;
   for (std::uint32_t i = 0; i < variables_of(JointType::kFloating); ++i) {

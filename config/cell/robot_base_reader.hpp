@@ -28,6 +28,12 @@ struct StatedBase {
                                          const PosesAtRest& at_rest, const ObjectList& objects,
                                          const Quantities& quantities);
 
+// Reads `attached:` of a robot, which says of a tool what `base:` with `on` says.
+[[nodiscard]] RobotBase read_robot_attachment(const YamlNode& node,
+                                              const std::vector<Robot>& robots,
+                                              const PosesAtRest& at_rest, const ObjectList& objects,
+                                              const Quantities& quantities);
+
 // Reads the name of what something stands on: a link of one of `robots`, or an object. If nothing
 // moves that, `base` becomes a pose in the world. `expected` ends the message about an unknown
 // name.

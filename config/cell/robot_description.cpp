@@ -13,11 +13,9 @@
 #include "config/yaml/scalar.hpp"
 
 namespace clearance {
-namespace {
 
-// Finds the file that a key names, which is required.
-std::optional<std::filesystem::path> find(const YamlNode& node, const RobotFiles& files,
-                                          Diagnostics& diagnostics, Revision& revision) {
+std::optional<std::filesystem::path> find_robot_file(const YamlNode& node, const RobotFiles& files,
+                                                     Diagnostics& diagnostics, Revision& revision) {
   const auto name = read_text(node, "a file", diagnostics);
   if (!name) return std::nullopt;
   const auto path = files.find(*name);
@@ -37,6 +35,8 @@ std::optional<std::filesystem::path> find(const YamlNode& node, const RobotFiles
   revision.add_file(*path, std::get<std::string>(bytes));
   return path;
 }
+
+namespace {
 
 // Refuses a name whose visual shapes did not become collision shapes.
 void refuse_other_links(const YamlNode& name, const UrdfRobot& robot, Diagnostics& diagnostics) {
@@ -58,9 +58,10 @@ std::optional<RobotDescription> read_description(const DescriptionKeys& keys,
                                                  Diagnostics& diagnostics, Revision& revision) {
   if (keys.urdf == nullptr) return std::nullopt;
   RobotDescription description;
-  const auto urdf = find(*keys.urdf, keys.files, diagnostics, revision);
-  const auto srdf =
-      keys.srdf == nullptr ? std::nullopt : find(*keys.srdf, keys.files, diagnostics, revision);
+  const auto urdf = find_robot_file(*keys.urdf, keys.files, diagnostics, revision);
+  const auto srdf = keys.srdf == nullptr
+                        ? std::nullopt
+                        : find_robot_file(*keys.srdf, keys.files, diagnostics, revision);
   const std::size_t before = diagnostics.count();
   if (srdf) {
     auto read = read_srdf(*srdf);

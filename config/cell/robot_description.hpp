@@ -23,6 +23,13 @@ struct DescriptionKeys {
   std::vector<const YamlNode*> visual_as_collision;  // names of links
 };
 
+// Finds the file that a key of a robot names. Returns nothing after a diagnostic. The file's bytes
+// go into the revision.
+[[nodiscard]] std::optional<std::filesystem::path> find_robot_file(const YamlNode& node,
+                                                                   const RobotFiles& files,
+                                                                   Diagnostics& diagnostics,
+                                                                   Revision& revision);
+
 // A URDF, its SRDF if there is one, and the tree that they describe.
 struct RobotDescription {
   std::filesystem::path urdf;

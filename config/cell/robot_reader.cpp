@@ -9,11 +9,14 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <utility>
 
+#include "config/cell/combined_srdf.hpp"
 #include "config/cell/joint_reader.hpp"
 #include "config/cell/link_parts.hpp"
 #include "config/cell/robot_description.hpp"
+#include "config/cell/robot_membership.hpp"
 #include "config/cell/ros_reader.hpp"
 #include "config/cell/stopping_reader.hpp"
 #include "config/scene/chain_rounding.hpp"
@@ -29,7 +32,9 @@ struct RobotKeys {
   const YamlNode* name_node = nullptr;
   const YamlNode* urdf_node = nullptr;
   const YamlNode* srdf_node = nullptr;
+  const YamlNode* combined_node = nullptr;  // srdf_with
   const YamlNode* base_node = nullptr;
+  const YamlNode* attached_node = nullptr;
   const YamlNode* joints_node = nullptr;
   const YamlNode* stopping_node = nullptr;
   std::vector<const YamlNode*> visual_as_collision;  // names of links
@@ -38,6 +43,7 @@ struct RobotKeys {
   std::vector<std::pair<std::string, std::filesystem::path>> packages;
   ObjectDefaults limits;
   std::int64_t frozen_limit_ns = 0;  // of all joints
+  bool absent = false;
 };
 
 class RobotReader {
@@ -64,7 +70,8 @@ class RobotReader {
   void read_packages(const YamlNode& node, RobotKeys& keys);
   void read_joint_topic(MapReader& map, RobotKeys& keys);
   bool has_names_of_its_own(const RobotKeys& keys, const RobotModel& model);
-  void add_links(const RobotKeys& keys, const RobotDescription& description, Robot& robot);
+  void add_links(const RobotKeys& keys, const RobotDescription& description,
+                 const Membership& membership, Robot& robot);
   void allow(const RobotKeys& keys, const RobotDescription& description, Robot& robot,
              PairExceptions& may_touch);
   void account_for_rounding(const RobotList& list);
@@ -79,6 +86,7 @@ class RobotReader {
   std::map<std::string, int> names_;         // of robots, with their lines
   std::set<std::string> links_, variables_;  // of all robots
   PosesAtRest at_rest_;                      // of all robots
+  std::vector<Membership> memberships_;      // of all robots that could be read
 };
 
 void RobotReader::read_packages(const YamlNode& node, RobotKeys& keys) {
@@ -133,7 +141,15 @@ RobotKeys RobotReader::read_keys(const YamlNode& node) {
   keys.name_node = map.required("name");
   keys.urdf_node = map.required("urdf");
   keys.srdf_node = map.optional("srdf");
+  keys.combined_node = map.optional("srdf_with");
   keys.base_node = map.optional("base");
+  keys.attached_node = map.optional("attached");
+  if (keys.base_node != nullptr && keys.attached_node != nullptr) {
+    diagnostics_.add(*keys.attached_node,
+                     "found 'attached' of a robot with a 'base'; expected one of the two");
+  }
+  if (const YamlNode* absent = map.optional("absent"))
+    keys.absent = read_flag(*absent, diagnostics_).value_or(false);
   keys.joints_node = map.optional("joints");
   keys.stopping_node = map.optional("stopping");
   read_joint_topic(map, keys);
@@ -194,7 +210,7 @@ bool RobotReader::has_names_of_its_own(const RobotKeys& keys, const RobotModel& 
 
 // Joints are sorted so that a parent link precedes its children: whether it moves is then known.
 void RobotReader::add_links(const RobotKeys& keys, const RobotDescription& description,
-                            Robot& robot) {
+                            const Membership& membership, Robot& robot) {
   std::map<std::string, const UrdfLink*> written;
   for (const UrdfLink& link : description.robot.links) written[keys.prefix + link.name] = &link;
   LinkParts parts({description.urdf, keys.packages, revision_.root()}, *keys.urdf_node, shapes_,
@@ -217,7 +233,8 @@ void RobotReader::add_links(const RobotKeys& keys, const RobotDescription& descr
     static_cast<void>(read_name(name, "the name of a link with its prefix", diagnostics_));
     Object object;
     object.name = link.name;
-    object.groups = {keys.name};
+    object.groups = membership.groups;
+    object.absent = membership.absent;
     object.margin = keys.limits.margin;
     if (const double error = parts.add(*description_of->second, object); error > 0.0) {
       objects_.mesh_errors[object.name] = error;
@@ -232,6 +249,7 @@ void RobotReader::add_links(const RobotKeys& keys, const RobotDescription& descr
       object.source = keys.limits.source;
     }
     link.object = static_cast<std::uint32_t>(objects_.objects.size());
+    if (membership.carrier) objects_.attachments.push_back({link.object, *membership.carrier});
     objects_.objects.push_back(std::move(object));
     objects_.places.push_back(keys.name_node);
   }
@@ -283,6 +301,10 @@ bool RobotReader::read(const YamlNode& node, RobotList& list) {
   if (keys.base_node != nullptr) {
     stated = read_robot_base(*keys.base_node, list.robots, at_rest_, objects_, quantities_);
   }
+  if (keys.attached_node != nullptr) {
+    stated.base =
+        read_robot_attachment(*keys.attached_node, list.robots, at_rest_, objects_, quantities_);
+  }
   const RobotBase& base = stated.base;
   Robot robot;
   if (description) {
@@ -296,6 +318,10 @@ bool RobotReader::read(const YamlNode& node, RobotList& list) {
   robot.stamps = keys.stamps;
   if (!description || keys.name.empty()) return false;
   if (!has_names_of_its_own(keys, {robot, description->model.variables})) return false;
+  const Membership membership =
+      keys.attached_node == nullptr
+          ? Membership{.groups = {keys.name}, .carrier = {}, .absent = keys.absent}
+          : membership_of({keys.name, keys.absent}, base, list.robots, memberships_, objects_);
   const auto first = static_cast<std::uint32_t>(list.variables.size());
   std::vector<JointVariable>& variables = description->model.variables;
   for (JointVariable& variable : variables) {
@@ -303,6 +329,7 @@ bool RobotReader::read(const YamlNode& node, RobotList& list) {
     variable.source = keys.limits.source;
     variable.frozen_limit_ns = keys.frozen_limit_ns;
     variable.robot = static_cast<std::uint32_t>(list.robots.size());
+    variable.is_read = !membership.absent;
   }
   if (!base.frame.empty()) limit_base(stated, variables);
   if (keys.joints_node != nullptr)
@@ -311,10 +338,19 @@ bool RobotReader::read(const YamlNode& node, RobotList& list) {
   list.variables.insert(list.variables.end(), variables.begin(), variables.end());
   for (RobotJoint& joint : robot.joints) joint.variable += first;
   set_plausible_motion(robot, list.variables);
+  if (keys.joints_node != nullptr) {
+    refuse_positions_outside(*keys.joints_node, std::span(list.variables).subspan(first),
+                             diagnostics_);
+  }
   if (keys.stopping_node != nullptr)
     read_stopping(*keys.stopping_node, file_, quantities_, revision_, list.variables, robot);
-  add_links(keys, *description, robot);
+  add_links(keys, *description, membership, robot);
   allow(keys, *description, robot, list.may_touch);
+  if (keys.combined_node != nullptr) {
+    read_combined_srdfs(*keys.combined_node, {file_, keys.packages, revision_.root()}, list.robots,
+                        keys.name_node->line, robot, list.may_touch, diagnostics_, revision_);
+  }
+  memberships_.push_back(membership);
   list.robots.push_back(std::move(robot));
   account_for_rounding(list);
   return true;

@@ -44,7 +44,8 @@ class Needs {
 
   void mark() {
     for (std::size_t i = 0; i < objects_.size(); ++i) scene_.objects[i].is_read = objects_[i];
-    for (JointVariable& variable : scene_.variables) variable.is_read = robots_[variable.robot];
+    for (JointVariable& variable : scene_.variables)
+      variable.is_read = variable.is_read && robots_[variable.robot];
     for (std::size_t i = 0; i < robots_.size(); ++i) {
       if (!robots_[i]) continue;
       for (const RobotLink& link : scene_.robots[i].links) {

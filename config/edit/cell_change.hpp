@@ -38,7 +38,7 @@ struct RemoveObject {
   std::string object;
 };
 
-// An absent object is known not to be there. What is attached to it is absent, too.
+// An absent object, or robot, is known not to be there. What is attached to it is absent, too.
 struct SetAbsent {
   std::string object;
   bool absent = true;
@@ -65,6 +65,36 @@ struct Attach {
 struct Detach {
   std::string object;
   std::optional<Pose> world_from_object = {};  // nothing: where it is now, as with Attach
+};
+
+// Attaches a robot, such as a gripper, to a link of a robot before it, or to an object. It loses
+// its base, its joints are read, and it is there.
+struct AttachRobot {
+  std::string robot;
+  std::string to;
+  std::optional<Pose> carrier_from_root = {};  // of its root link; nothing: as with Attach
+  std::optional<double> overlap = {};          // m, of its root link, as with Attach
+  // True if it may be farther than 0.5 m from its carrier, or from where it is now. A running
+  // daemon refuses that otherwise.
+  bool far = false;
+};
+
+// Where a joint of one position stands, rad or m. The name is that of the URDF.
+struct JointPosition {
+  std::string joint;
+  double position = 0.0;
+};
+
+// An attached robot gets a base that stands still. Its joints stand, too, unless it has power, and
+// its joint states do not count until it is attached again.
+struct DetachRobot {
+  std::string robot;
+  std::optional<Pose> world_from_root = {};  // nothing: where it is now, as with Attach
+  // The joints that stand. None: where those of one position are now, which only a running monitor
+  // knows, as with a pose. The joints of an absent robot need not be known.
+  std::vector<JointPosition> joints = {};
+  bool powered = false;  // its joints are read on
+  bool absent = false;   // it is known not to be there
 };
 
 // Places a fixed object elsewhere.
@@ -139,6 +169,7 @@ struct ReadCellAgain {
 using CellChange =
     std::variant<AddObject, ReplaceObject, AddFromTemplate, RemoveObject, SetAbsent, Attach, Detach,
                  Place, SetMaxSpeed, SetMargin, SetAgeLimit, SetSource, SetPair, SetZoneThresholds,
-                 AllowContact, WithdrawContact, ReplaceCell, ReadCellAgain>;
+                 AllowContact, WithdrawContact, ReplaceCell, ReadCellAgain, AttachRobot,
+                 DetachRobot>;
 
 }  // namespace clearance

@@ -22,8 +22,9 @@ namespace clearance {
 class CellDocument {
  public:
   // The lists of a cell that changes edit, in the order in which a new one is placed in the file.
-  static constexpr std::array<std::string_view, 7> kLists = {
-      "templates", "objects", "margins", "pairs", "allowed_collisions", "zones", "contacts"};
+  static constexpr std::array<std::string_view, 8> kLists = {
+      "templates",          "objects", "robots",  "margins", "pairs",
+      "allowed_collisions", "zones",   "contacts"};
 
   [[nodiscard]] static std::variant<CellDocument, YamlFault> parse(const std::string& text);
 

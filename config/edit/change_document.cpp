@@ -8,6 +8,7 @@
 
 #include "config/edit/contact_entry.hpp"
 #include "config/edit/object_users.hpp"
+#include "config/edit/robot_entry.hpp"
 #include "config/text/sentences.hpp"
 #include "config/text/spelling.hpp"
 #include "config/yaml/quantity_nodes.hpp"
@@ -19,19 +20,12 @@ namespace {
 
 using Fault = std::optional<ChangeFault>;
 
-YamlNode list_of(const std::vector<std::string>& names) {
-  YamlNode list;
-  list.kind = YamlNode::Kind::kSequence;
-  for (const std::string& name : names) list.items.push_back(text_node(name));
-  return list;
-}
-
 // Only a running monitor knows where objects are.
-ChangeFault no_pose(const std::string& object) {
-  return {fmt::format("objects[{}]", object),
+ChangeFault no_pose(std::string_view list, const std::string& name) {
+  return {fmt::format("{}[{}]", list, name),
           fmt::format("found no pose for '{}'; expected one, since a cell does not say where its "
-                      "objects are now",
-                      object)};
+                      "{} are now",
+                      name, list)};
 }
 
 // Reads one entry of `objects`, which may stand in a list of its own.
@@ -64,6 +58,10 @@ class ChangeMaker {
   Fault operator()(const SetAbsent& change);
   Fault operator()(const Attach& change);
   Fault operator()(const Detach& change);
+  Fault operator()(const AttachRobot& change) {
+    return edit_robot(change, change.carrier_from_root);
+  }
+  Fault operator()(const DetachRobot& change) { return edit_robot(change, change.world_from_root); }
   Fault operator()(const Place& change);
   Fault operator()(const SetMaxSpeed& change) {
     return set_length(change.object, "max_speed", change.m_per_s);
@@ -92,10 +90,17 @@ class ChangeMaker {
   };
   [[nodiscard]] std::variant<Found, ChangeFault> named(std::string_view list,
                                                        const std::string& name) const;
-  // Edits a copy of the object, which then replaces it, unless `edit` returns a fault.
+  // Edits a copy of the entry, which then replaces it, unless `edit` returns a fault.
   template <class Edit>
-  Fault edit_object(const std::string& name, const Edit& edit);
-  Fault set_value(const std::string& object, const std::string& key, std::optional<YamlNode> value);
+  Fault edit_entry(std::string_view list, const std::string& name, const Edit& edit);
+  template <class Edit>
+  Fault edit_object(const std::string& name, const Edit& edit) {
+    return edit_entry("objects", name, edit);
+  }
+  template <class Change>
+  Fault edit_robot(const Change& change, const std::optional<Pose>& stated);
+  Fault set_value(const std::string& name, const std::string& key, std::optional<YamlNode> value,
+                  std::string_view list = "objects");
   Fault set_length(const std::string& object, const std::string& key,
                    const std::optional<double>& value);
   [[nodiscard]] YamlNode length(double metres) const { return length_node(metres, unit_); }
@@ -114,25 +119,28 @@ std::variant<ChangeMaker::Found, ChangeFault> ChangeMaker::named(std::string_vie
     names.push_back(name_of(items[i]));
     if (names.back() == name) return Found{i, items[i]};
   }
-  return ChangeFault{std::string(list),
-                     fmt::format("found the name '{}', which no entry of '{}' has; expected one of "
-                                 "these, and no link of a robot or object of a planning scene{}",
-                                 name, list, did_you_mean(name, names))};
+  return ChangeFault{
+      std::string(list),
+      fmt::format("found the name '{}', which no entry of '{}' has; expected one of "
+                  "these{}{}",
+                  name, list,
+                  list == "objects" ? ", and no link of a robot or object of a planning scene" : "",
+                  did_you_mean(name, names))};
 }
 
 template <class Edit>
-Fault ChangeMaker::edit_object(const std::string& name, const Edit& edit) {
-  auto found = named("objects", name);
+Fault ChangeMaker::edit_entry(std::string_view list, const std::string& name, const Edit& edit) {
+  auto found = named(list, name);
   if (auto* fault = std::get_if<ChangeFault>(&found)) return std::move(*fault);
   auto& [index, node] = std::get<Found>(found);
   if (Fault fault = edit(node)) return fault;
-  document_.replace("objects", index, std::move(node));
+  document_.replace(list, index, std::move(node));
   return std::nullopt;
 }
 
-Fault ChangeMaker::set_value(const std::string& object, const std::string& key,
-                             std::optional<YamlNode> value) {
-  return edit_object(object, [&](YamlNode& node) -> Fault {
+Fault ChangeMaker::set_value(const std::string& name, const std::string& key,
+                             std::optional<YamlNode> value, std::string_view list) {
+  return edit_entry(list, name, [&](YamlNode& node) -> Fault {
     erase(node, key);
     if (value) set(node, key, *std::move(value));
     return std::nullopt;
@@ -165,7 +173,7 @@ Fault ChangeMaker::operator()(const AddFromTemplate& change) {
   YamlNode node;
   set(node, "name", text_node(change.object));
   set(node, "template", text_node(change.template_name));
-  if (!change.groups.empty()) set(node, "groups", list_of(change.groups));
+  if (!change.groups.empty()) set(node, "groups", texts_node(change.groups));
   set(node, "fixed", flag_node(true));
   set(node, "pose", pose(change.world_from_object));
   document_.append("objects", std::move(node));
@@ -188,8 +196,10 @@ Fault ChangeMaker::operator()(const RemoveObject& change) {
 }
 
 Fault ChangeMaker::operator()(const SetAbsent& change) {
+  const bool is_robot = std::holds_alternative<Found>(named("robots", change.object));
   return set_value(change.object, "absent",
-                   change.absent ? std::optional(flag_node(true)) : std::nullopt);
+                   change.absent ? std::optional(flag_node(true)) : std::nullopt,
+                   is_robot ? "robots" : "objects");
 }
 
 // Erases the keys that say where an object is, and which poses count.
@@ -201,20 +211,20 @@ void forget_place(YamlNode& node) {
 }
 
 Fault ChangeMaker::operator()(const Attach& change) {
-  if (!change.carrier_from_object) return no_pose(change.object);
+  if (!change.carrier_from_object) return no_pose("objects", change.object);
   return edit_object(change.object, [&](YamlNode& node) -> Fault {
     forget_place(node);
     YamlNode attached;
     set(attached, "to", text_node(change.to));
     set(attached, "pose", pose(*change.carrier_from_object));
-    if (!change.touch.empty()) set(attached, "touch", list_of(change.touch));
+    if (!change.touch.empty()) set(attached, "touch", texts_node(change.touch));
     set(node, "attached", std::move(attached));
     return std::nullopt;
   });
 }
 
 Fault ChangeMaker::operator()(const Detach& change) {
-  if (!change.world_from_object) return no_pose(change.object);
+  if (!change.world_from_object) return no_pose("objects", change.object);
   return edit_object(change.object, [&](YamlNode& node) -> Fault {
     if (find(node, "attached") == nullptr) {
       return ChangeFault{fmt::format("objects[{}]", change.object),
@@ -226,6 +236,14 @@ Fault ChangeMaker::operator()(const Detach& change) {
     set(node, "fixed", flag_node(true));
     set(node, "pose", pose(*change.world_from_object));
     return std::nullopt;
+  });
+}
+
+// An unknown robot is named before a pose is missed.
+template <class Change>
+Fault ChangeMaker::edit_robot(const Change& change, const std::optional<Pose>& stated) {
+  return edit_entry("robots", change.robot, [&](YamlNode& node) -> Fault {
+    return stated ? move_robot(change, pose(*stated), node) : no_pose("robots", change.robot);
   });
 }
 
@@ -298,7 +316,7 @@ Fault ChangeMaker::operator()(const SetPair& change) {
   if (place < items.size()) {
     node = items[place];
   } else {
-    set(node, "between", list_of({change.a, change.b}));
+    set(node, "between", texts_node({change.a, change.b}));
   }
   // Later changes may leave it nothing to cover: an attached object has its carrier's pairs.
   set(node, "may_be_empty", flag_node(true));
@@ -352,6 +370,8 @@ struct Touched {
   TouchedEntry operator()(const WithdrawContact& of) const { return {"contacts", of.contact}; }
   TouchedEntry operator()(const ReplaceCell&) const { return {}; }
   TouchedEntry operator()(const ReadCellAgain&) const { return {}; }
+  TouchedEntry operator()(const AttachRobot& change) const { return {"robots", change.robot}; }
+  TouchedEntry operator()(const DetachRobot& change) const { return {"robots", change.robot}; }
   template <class Change>
   TouchedEntry operator()(const Change& change) const {
     return {"objects", change.object};

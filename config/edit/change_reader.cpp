@@ -22,6 +22,7 @@
 namespace clearance {
 namespace {
 
+constexpr Range kPositions{.least = -1e6, .most = 1e6};       // rad or m
 constexpr Range kTime{.least = 0.001, .most = 86'400'000.0};  // ms
 
 // Reads the keys of one change. The overloads of read() list the keys of each kind.
@@ -50,14 +51,26 @@ class ChangeKeys {
     name("to", change.to);
     change.carrier_from_object = pose();
     names("touch", change.touch);
-    if (const YamlNode* overlap = map_.optional("overlap"))
-      change.overlap = quantities_.length(*overlap, "the greatest overlap", kNotNegative);
-    if (const YamlNode* far = map_.optional("far"))
-      change.far = read_flag(*far, diagnostics_).value_or(false);
+    fit(change);
   }
   void read(Detach& change) {
     name("object", change.object);
     change.world_from_object = pose();
+  }
+  void read(AttachRobot& change) {
+    name("robot", change.robot);
+    name("to", change.to);
+    change.carrier_from_root = pose();
+    fit(change);
+  }
+  void read(DetachRobot& change) {
+    name("robot", change.robot);
+    change.world_from_root = pose();
+    if (const YamlNode* joints = map_.optional("joints")) read_positions(*joints, change.joints);
+    if (const YamlNode* powered = map_.optional("powered"))
+      change.powered = read_flag(*powered, diagnostics_).value_or(false);
+    if (const YamlNode* absent = map_.optional("absent"))
+      change.absent = read_flag(*absent, diagnostics_).value_or(false);
   }
   void read(Place& change) {
     name("object", change.object);
@@ -152,6 +165,27 @@ class ChangeKeys {
     if (node == nullptr) return;
     if (auto read = read_text(*node, "a text", diagnostics_)) out = *std::move(read);
   }
+  // Of what is attached.
+  template <class Change>
+  void fit(Change& change) {
+    if (const YamlNode* overlap = map_.optional("overlap"))
+      change.overlap = quantities_.length(*overlap, "the greatest overlap", kNotNegative);
+    if (const YamlNode* far = map_.optional("far"))
+      change.far = read_flag(*far, diagnostics_).value_or(false);
+  }
+  void read_positions(const YamlNode& node, std::vector<JointPosition>& out) {
+    if (node.kind != YamlNode::Kind::kMap) {
+      diagnostics_.add(
+          node, fmt::format("found {}; expected joints and their positions in rad or m: {{NAME: "
+                            "POSITION}}",
+                            describe(node)));
+    }
+    for (const YamlEntry& entry : node.entries) {
+      const auto joint = read_name(entry.key, "a joint's name in the URDF", diagnostics_);
+      const auto at = read_number(entry.value, kPositions, "a position in rad or m", diagnostics_);
+      if (joint && at) out.push_back({*joint, *at});
+    }
+  }
   std::optional<Pose> pose() {
     const YamlNode* node = map_.optional("pose");
     return node == nullptr ? std::nullopt : quantities_.pose(*node);
@@ -216,7 +250,7 @@ class ChangeReader {
 };
 
 std::optional<CellChange> ChangeReader::read(const YamlNode& node) {
-  static constexpr std::array<Kind, 18> kKinds = {{
+  static constexpr std::array<Kind, 20> kKinds = {{
       {"add_object", &ChangeReader::entry<AddObject>},
       {"replace_object", &ChangeReader::entry<ReplaceObject>},
       {"add_from_template", &ChangeReader::change<AddFromTemplate>},
@@ -224,6 +258,8 @@ std::optional<CellChange> ChangeReader::read(const YamlNode& node) {
       {"set_absent", &ChangeReader::change<SetAbsent>},
       {"attach", &ChangeReader::change<Attach>},
       {"detach", &ChangeReader::change<Detach>},
+      {"attach_robot", &ChangeReader::change<AttachRobot>},
+      {"detach_robot", &ChangeReader::change<DetachRobot>},
       {"place", &ChangeReader::change<Place>},
       {"set_max_speed", &ChangeReader::change<SetMaxSpeed>},
       {"set_margin", &ChangeReader::change<SetMargin>},

@@ -47,7 +47,10 @@ std::vector<std::string> users_of(const std::string& name, const CellDocument& d
   if (const YamlNode* robots = find(document.tree(), "robots")) {
     for (std::size_t i = 0; i < robots->items.size(); ++i) {
       const YamlNode* base = find(robots->items[i], "base");
-      if (base != nullptr && text_of(find(*base, "on")) == name) add("robots", robots->items[i], i);
+      const YamlNode* attached = find(robots->items[i], "attached");
+      if ((base != nullptr && text_of(find(*base, "on")) == name) ||
+          (attached != nullptr && text_of(find(*attached, "to")) == name))
+        add("robots", robots->items[i], i);
     }
   }
   return users;

@@ -66,15 +66,18 @@ struct JointVariable {
   // Velocities are differences of positions that one message tells alone, so that no position
   // contradicts them: of the base of a robot that follows a frame of tf.
   bool velocity_is_difference = false;
-  bool wraps = false;                // an angle that is the same after a full turn
+  bool wraps = false;  // an angle that is the same after a full turn
+  // Stated: the joint stands here, and its joint states do not count. NaN: it is read.
+  double held = std::numeric_limits<double>::quiet_NaN();
   std::int64_t age_limit_ns = 0;     // an older position is late
   std::int64_t frozen_limit_ns = 0;  // the joint may keep its position for this long; 0: always
   // Index into Scene::variables of the first variable of its joint.
   std::uint32_t first_of_joint = 0;
   std::string source;       // the only source that is used; empty: the first that sends some
   std::uint32_t robot = 0;  // index into Scene::robots
-  bool is_read = true;      // as Object::is_read
+  bool is_read = true;      // as Object::is_read; false of an absent robot, too
 
+  [[nodiscard]] bool is_held() const noexcept { return !std::isnan(held); }
   // A position that needs a higher speed than this, per second, contradicts the one before.
   [[nodiscard]] double plausible_speed() const noexcept {
     return std::isfinite(max_speed) ? max_speed : unstated_speed;

@@ -97,6 +97,12 @@ bool same_variables(std::uint32_t robot_before, const Scene& before, std::uint32
   return count == 0;
 }
 
+bool same_held(const RobotJoint& a, const Scene& before, const RobotJoint& b, const Scene& now) {
+  if (variables_of(b.type) != 1) return true;
+  const JointVariable &old = before.variables[a.variable], &variable = now.variables[b.variable];
+  return variable.is_held() ? variable.held == old.held : !old.is_held();
+}
+
 bool same_joint(const RobotJoint& a, const RobotJoint& b) {
   return a.name == b.name && a.type == b.type && a.parent == b.parent && a.axis == b.axis &&
          a.multiplier == b.multiplier && a.offset == b.offset && a.plane_x == b.plane_x &&
@@ -114,7 +120,8 @@ bool same_chain(const Robot& old, const Scene& before, const Robot& robot, const
     return false;
   }
   for (std::size_t i = 0; i < robot.joints.size(); ++i) {
-    if (!same_joint(old.joints[i], robot.joints[i])) return false;
+    const RobotJoint &of_old = old.joints[i], &joint = robot.joints[i];
+    if (!same_joint(of_old, joint) || !same_held(of_old, before, joint, now)) return false;
   }
   switch (b.kind) {
     case RobotBase::Kind::kWorld:

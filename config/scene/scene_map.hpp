@@ -24,7 +24,7 @@ struct SceneMap {
 // sends it in the same manner. So these have no counterpart:
 //  - an object that is fixed in one of the scenes, since its state follows from the scene;
 //  - an object that is a robot's link in one scene only, or of another robot, or of a robot whose
-//    joints or base are placed otherwise, or whose base has no counterpart;
+//    joints or base are placed otherwise, or held otherwise, or whose base has no counterpart;
 //  - an object or joint variable for which the scenes state different sources or frames;
 //  - an object that is absent by one of the scenes;
 //  - a robot whose joint variables are not all the same, with its links and variables.

@@ -191,6 +191,14 @@ std::string map_entry(const YamlNode& key, const YamlNode& value, std::size_t in
 }
 
 YamlNode text_node(std::string text) { return scalar(std::move(text), true); }
+
+YamlNode texts_node(const std::vector<std::string>& texts) {
+  YamlNode list;
+  list.kind = YamlNode::Kind::kSequence;
+  for (const std::string& text : texts) list.items.push_back(text_node(text));
+  return list;
+}
+
 YamlNode number_node(double value) {
   return scalar(fmt::format("{}", value == 0.0 ? 0.0 : value), false);
 }

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "config/yaml/yaml_node.hpp"
 
@@ -23,6 +24,7 @@ namespace clearance {
 
 // Nodes for such trees.
 [[nodiscard]] YamlNode text_node(std::string text);
+[[nodiscard]] YamlNode texts_node(const std::vector<std::string>& texts);
 [[nodiscard]] YamlNode number_node(double value);
 [[nodiscard]] YamlNode flag_node(bool value);
 

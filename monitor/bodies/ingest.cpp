@@ -71,7 +71,7 @@ void visit_links(Inputs& inputs) noexcept {
 std::optional<Reject> take(const JointSample& sample, const Scene& scene, Inputs& inputs) noexcept {
   if (record_of(sample, inputs) == nullptr) return Reject::kUnknownObject;
   const JointVariable& variable = scene.variables[sample.variable];
-  if (!variable.is_read) return std::nullopt;
+  if (!variable.is_read || variable.is_held()) return std::nullopt;
   const std::int64_t stamp_ns = tick_stamp(sample, variable.age_limit_ns, scene, inputs);
   const std::span<TrackedVariable> variables = inputs.robots.variables();
   const auto cause =

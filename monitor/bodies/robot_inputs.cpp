@@ -14,13 +14,27 @@ std::uint32_t first_link_of(const Scene& scene) {
   return first;
 }
 
-// No joint state ever comes for a robot without variables. It follows what it stands on.
+// No joint state is awaited of a robot without variables, which follows what it stands on, and of
+// one whose joints are all held.
 std::vector<bool> heard_at_the_start(const Scene& scene) {
   std::vector<bool> heard;
   for (const Robot& robot : scene.robots)
     heard.push_back(robot.base.kind != RobotBase::Kind::kWorld);
-  for (const JointVariable& variable : scene.variables) heard[variable.robot] = false;
+  for (const JointVariable& variable : scene.variables) heard[variable.robot] = true;
+  for (const JointVariable& variable : scene.variables)
+    if (!variable.is_held()) heard[variable.robot] = false;
   return heard;
+}
+
+// A held joint stands, and is known at every tick.
+std::vector<TrackedVariable> variables_at_the_start(const Scene& scene) {
+  std::vector<TrackedVariable> variables(scene.variables.size());
+  for (std::size_t i = 0; i < variables.size(); ++i) {
+    if (!scene.variables[i].is_held()) continue;
+    variables[i].input.has_value = variables[i].velocity_known = true;
+    variables[i].position = scene.variables[i].held;
+  }
+  return variables;
 }
 
 LinkState base_at(const TrackedObject& object) noexcept {
@@ -50,7 +64,7 @@ RobotInputs::RobotInputs(const Scene& scene)
       first_link_(first_link_of(scene)),
       robot_of_(scene.objects.size() - first_link_),
       heard_(heard_at_the_start(scene)),
-      variables_(scene.variables.size()),
+      variables_(variables_at_the_start(scene)),
       bases_(scene.robots.size()),
       seen_(scene.sensors.size() * scene.robots.size()),
       kinematics_(scene.robots) {
@@ -106,11 +120,12 @@ void RobotInputs::forget_ages(std::int64_t now_ns) noexcept {
 
 void RobotInputs::take_over(const RobotInputs& before, const SceneMap& map) noexcept {
   for (std::size_t i = 0; i < variables_.size(); ++i) {
-    if (map.variables[i] != SceneMap::kNone && scene_.variables[i].is_read)
+    const JointVariable& variable = scene_.variables[i];
+    if (map.variables[i] != SceneMap::kNone && variable.is_read && !variable.is_held())
       variables_[i] = before.variables_[map.variables[i]];
   }
   for (std::size_t i = 0; i < heard_.size(); ++i) {
-    if (map.robots[i] != SceneMap::kNone) heard_[i] = before.heard_[map.robots[i]];
+    if (map.robots[i] != SceneMap::kNone) heard_[i] = heard_[i] || before.heard_[map.robots[i]];
   }
   // The sensors of a scene stand in the order of the cell.
   const std::size_t robots = heard_.size(), robots_before = before.heard_.size();
@@ -140,6 +155,7 @@ void RobotInputs::restore(StateReader& in) noexcept {
 void RobotInputs::place(std::int64_t now_ns, std::span<TrackedObject> objects) noexcept {
   if (std::ranges::find(heard_, true) == heard_.end()) return;
   for (std::size_t i = 0; i < variables_.size(); ++i) {
+    if (scene_.variables[i].is_held()) variables_[i].input.stamp_ns = now_ns;
     advance(scene_.variables[i], now_ns, variables_[i]);
   }
   for (std::size_t robot = 0; robot < bases_.size(); ++robot) {

@@ -133,8 +133,42 @@ void MessageTranslator::detach(const AttachedCollisionObject& message, const std
   }
 }
 
+// A tool with joints is a robot of the cell: it is attached and detached where it is. Its own links
+// count, and not the shapes of the message; the SRDF of both says what may touch.
+void MessageTranslator::change_robot(const AttachedCollisionObject& message,
+                                     const std::string& path) {
+  const std::string& id = message.object.id;
+  KnownRobot& robot = scene_.robots.at(id);
+  const bool attaches = message.object.operation == static_cast<std::uint8_t>(Operation::kAdd);
+  if (!attaches && message.object.operation != static_cast<std::uint8_t>(Operation::kRemove)) {
+    fail(path + "object.operation",
+         fmt::format("found {} of the robot '{}'; expected 0 (ADD) or 1 (REMOVE)",
+                     message.object.operation, id));
+  }
+  if (attaches && robot.carrier == message.link_name) return;
+  const auto root = world_from(robot.root);
+  if (!root)
+    fail(path + "object.id",
+         fmt::format("found the robot '{}', which is at no known place now; expected that it is "
+                     "there, and its joints to be known",
+                     id));
+  if (!attaches) {
+    result_.changes.emplace_back(DetachRobot{.robot = id, .world_from_root = root});
+    robot.carrier = "";
+    return;
+  }
+  result_.changes.emplace_back(
+      AttachRobot{.robot = id,
+                  .to = message.link_name,
+                  .carrier_from_root = compose(inverse(link_of(message, path)), *root),
+                  .overlap = kAnyDepth,
+                  .far = true});
+  robot.carrier = message.link_name;
+}
+
 void MessageTranslator::translate(const AttachedCollisionObject& message, const std::string& path) {
   guarded(message.object.id, [&] {
+    if (scene_.robots.contains(message.object.id)) return change_robot(message, path);
     switch (message.object.operation) {
       case static_cast<std::uint8_t>(Operation::kAdd):
         return message.object.shapes() == 0 ? attach_as_it_is(message, path)

@@ -81,6 +81,7 @@ KnownScene known_scene(const Cell& cell) {
     added.margin = object.margin;
   }
   for (const Robot& robot : scene.robots) {
+    if (!robot.is_attached) known.robots[robot.name].root = robot.links.front().name;
     for (std::uint32_t i = 0; i < robot.links.size() && !robot.is_attached; ++i) {
       const RobotLink& link = robot.links[i];
       known.links[link.name] = pose_at_rest(robot, i);
@@ -96,6 +97,12 @@ KnownScene known_scene(const Cell& cell) {
   if (tree == nullptr) return known;
   known.unit = length_unit_of(*tree);
   for (const YamlNode& entry : items_of(*tree, "objects")) add_entry(entry, *tree, known);
+  for (const YamlNode& entry : items_of(*tree, "robots")) {
+    const auto robot = known.robots.find(text_of(find(entry, "name")));
+    const YamlNode* attached = find(entry, "attached");
+    if (robot != known.robots.end() && attached != nullptr)
+      robot->second.carrier = text_of(find(*attached, "to"));
+  }
   for (const YamlNode& entry : items_of(*tree, "margins"))
     known.margins.insert(text_of(find(entry, "name")));
   for (const YamlNode& entry : items_of(*tree, "allowed_collisions")) {

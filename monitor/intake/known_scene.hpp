@@ -41,14 +41,21 @@ struct KnownObject {
   YamlNode entry = {};  // of an object in `objects`
 };
 
+// A robot of the cell, which is a tool if something carries it.
+struct KnownRobot {
+  std::string root;     // its root link
+  std::string carrier;  // what it is attached to; empty: nothing
+};
+
 using NamePair = std::pair<std::string, std::string>;  // in alphabetic order
 
 struct KnownScene {
   std::map<std::string, KnownObject> objects;        // every object of the scene
   std::map<std::string, std::optional<Pose>> links;  // where nothing moves the link: in the world
-  std::set<NamePair> watched;                        // the pairs of the scene
-  std::set<NamePair> exceptions;                     // that follow MoveIt's collision matrix
-  std::set<std::string> margins;                     // links with an entry of `margins`
+  std::map<std::string, KnownRobot> robots;
+  std::set<NamePair> watched;     // the pairs of the scene
+  std::set<NamePair> exceptions;  // that follow MoveIt's collision matrix
+  std::set<std::string> margins;  // links with an entry of `margins`
   LengthUnit unit = LengthUnit::kMetre;
   std::string world;                // the frame that is the cell's world
   std::string group;                // of objects that MoveIt has added

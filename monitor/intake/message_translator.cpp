@@ -91,6 +91,11 @@ void MessageTranslator::refuse_others(const std::string& id, const std::string& 
   const KnownObject* object = find(id);
   if (object != nullptr && object->where == Where::kLink)
     fail(path + "id", fmt::format("found '{}', a link of a robot; expected another name", id));
+  if (scene_.robots.contains(id)) {
+    fail(path + "id", fmt::format("found '{}', a robot of the cell, whose own links count; "
+                                  "expected another name, or an attached object",
+                                  id));
+  }
   if (object != nullptr && !object->is_moveits) {
     fail(path + "id", fmt::format("found '{}', which the cell itself has; expected an object that "
                                   "MoveIt has added",

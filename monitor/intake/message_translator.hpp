@@ -61,6 +61,7 @@ class MessageTranslator {
   void attach_as_it_is(const AttachedCollisionObject& message, const std::string& path);
   void attach_with_shapes(const AttachedCollisionObject& message, const std::string& path);
   void append_attached(const AttachedCollisionObject& message, const std::string& path);
+  void change_robot(const AttachedCollisionObject& message, const std::string& path);
   void detach(const AttachedCollisionObject& message, const std::string& path);
   void detach(const std::string& id, KnownObject& object, const std::string& path);
 

@@ -39,23 +39,27 @@ class LoopQuestion {
   std::atomic<bool> answered_{false};
 };
 
-// Asks where bodies of the scene are, which must be that of the loop.
+// Asks where bodies of the scene are, and its first joint variables. The scene must be that of the
+// loop.
 class PoseQuestion final : public LoopQuestion {
  public:
-  explicit PoseQuestion(std::vector<SceneBody> bodies)
-      : bodies_(std::move(bodies)), poses_(bodies_.size()) {}
+  explicit PoseQuestion(std::vector<SceneBody> bodies, std::size_t variables = 0)
+      : bodies_(std::move(bodies)), poses_(bodies_.size()), joints_(variables) {}
 
   // Once it is answered: in the order of the bodies. All poses are those of the last tick.
   [[nodiscard]] std::span<const PresentPose> poses() const noexcept { return poses_; }
+  [[nodiscard]] std::span<const PresentJoint> joints() const noexcept { return joints_; }
 
  private:
   void copy(const LoopState& loop) noexcept override {
     for (std::size_t i = 0; i < bodies_.size(); ++i)
       poses_[i] = present_pose(bodies_[i], loop.monitor);
+    for (std::uint32_t i = 0; i < joints_.size(); ++i) joints_[i] = loop.monitor.present_joint(i);
   }
 
   std::vector<SceneBody> bodies_;
   std::vector<PresentPose> poses_;
+  std::vector<PresentJoint> joints_;
 };
 
 }  // namespace clearance

@@ -44,6 +44,18 @@ void visit_fields(const Visit& visit, Message& m, Of& c) {
   } else if constexpr (std::is_same_v<Change, Detach> || std::is_same_v<Change, Place>) {
     visit("object", m.object, c.object, kName);
     visit("world_from_object", m.world_from_object, c.world_from_object);
+  } else if constexpr (std::is_same_v<Change, AttachRobot>) {
+    visit("robot", m.robot, c.robot, kName);
+    visit("to", m.to, c.to, kName);
+    visit("carrier_from_root", m.carrier_from_root, c.carrier_from_root);
+    visit("overlap", m.overlap, c.overlap);
+    visit("far", m.far, c.far);
+  } else if constexpr (std::is_same_v<Change, DetachRobot>) {
+    visit("robot", m.robot, c.robot, kName);
+    visit("world_from_root", m.world_from_root, c.world_from_root);
+    visit("joints", m.joints, c.joints);
+    visit("powered", m.powered, c.powered);
+    visit("absent", m.absent, c.absent);
   } else if constexpr (std::is_same_v<Change, SetMaxSpeed>) {
     visit("object", m.object, c.object, kName);
     visit("m_per_s", m.m_per_s, c.m_per_s);
@@ -130,6 +142,10 @@ inline constexpr std::tuple kChangeKinds{
                              &ChangeUnion::replace_cell),
     change_kind<ReadCellAgain>(clearance_msg_CHANGE_READ_CELL_AGAIN, "read_cell_again",
                                &ChangeUnion::read_cell_again),
+    change_kind<AttachRobot>(clearance_msg_CHANGE_ATTACH_ROBOT, "attach_robot",
+                             &ChangeUnion::attach_robot),
+    change_kind<DetachRobot>(clearance_msg_CHANGE_DETACH_ROBOT, "detach_robot",
+                             &ChangeUnion::detach_robot),
 };
 static_assert(std::tuple_size_v<decltype(kChangeKinds)> == std::variant_size_v<CellChange>);
 

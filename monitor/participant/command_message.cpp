@@ -59,6 +59,18 @@ class FromWire {
     for (std::uint32_t i = 0; i < from._length; ++i)
       take(fmt::format("{}[{}]", path, i), from._buffer[i], to.emplace_back(), kind);
   }
+  void take(const std::string& path, const dds_sequence_clearance_msg_JointPosition& from,
+            std::vector<JointPosition>& to) const {
+    if (from._length > clearance_msg_kMaxJoints)
+      return refuse(path, fmt::format("found {} joints; expected at most {}", from._length,
+                                      clearance_msg_kMaxJoints));
+    for (std::uint32_t i = 0; i < from._length; ++i) {
+      JointPosition& joint = to.emplace_back();
+      take(fmt::format("{}[{}].joint", path, i), from._buffer[i].joint, joint.joint,
+           ChangeText::kName);
+      take(fmt::format("{}[{}].position", path, i), from._buffer[i].position, joint.position);
+    }
+  }
   void take(const std::string&, bool from, bool& to) const { to = from; }
   void take(const std::string& path, double from, double& to) const {
     if (!std::isfinite(from)) return refuse(path, not_finite(from));
@@ -109,6 +121,13 @@ struct ToWire {
   static void put(const std::string& from, char*& to) { put_value(from, to); }
   static void put(const std::vector<std::string>& from, dds_sequence_string& to) {
     put_value(from, to);
+  }
+  static void put(const std::vector<JointPosition>& from,
+                  dds_sequence_clearance_msg_JointPosition& to) {
+    put_list(from, to, [](const JointPosition& joint, clearance_msg_JointPosition& out) {
+      put(joint.joint, out.joint);
+      out.position = joint.position;
+    });
   }
   template <class Number>
   requires std::is_arithmetic_v<Number>

@@ -149,13 +149,14 @@ void copy_name(const LoopStatistics& statistics, std::uint32_t source, char* out
   if (source < kMaxSources) statistics.sources[source].view().copy(out, kMaxSourceLength);
 }
 
-// The ages of moving objects; fixed ones have none.
+// The ages of moving objects; fixed ones have none, and none is missed of absent ones.
 void fill_inputs(const Scene& scene, const LoopStatistics& statistics, clearance_msg_Health& out) {
   reserve_sequence(out.inputs,
                    std::min<std::size_t>(scene.objects.size(), clearance_msg_kMaxObjects));
   for (std::uint32_t object = 0; object < scene.objects.size(); ++object) {
     const Object& of = scene.objects[object];
-    if (of.fixed || !of.is_read || out.inputs._length == out.inputs._maximum) continue;
+    if (of.fixed || !of.is_read || statistics.ages[object].absent) continue;
+    if (out.inputs._length == out.inputs._maximum) continue;
     clearance_msg_InputAge& entry = out.inputs._buffer[out.inputs._length++];
     entry.object = object;
     entry.name = dds_string_dup(scene.objects[object].name.c_str());

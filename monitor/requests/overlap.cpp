@@ -27,10 +27,13 @@ RigidRoot root_of(const Scene& scene, std::uint32_t object) {
 // name is in the text.
 struct PutsElsewhere {
   const std::string& object;
+  std::string robot;  // whose root link it is; empty: of none
   bool operator()(const Attach& change) const { return change.object == object; }
   bool operator()(const Detach& change) const { return change.object == object; }
   bool operator()(const Place& change) const { return change.object == object; }
   bool operator()(const RemoveObject& change) const { return change.object == object; }
+  bool operator()(const AttachRobot& change) const { return change.robot == robot; }
+  bool operator()(const DetachRobot& change) const { return change.robot == robot; }
   template <class Change>
   bool operator()(const Change&) const {
     return false;
@@ -62,11 +65,24 @@ Object origin_named(const std::string& name) {
 
 }  // namespace
 
+std::optional<Attach> attachment_in(const CellChange& change, const Scene& scene) {
+  if (const auto* attach = std::get_if<Attach>(&change)) return *attach;
+  const auto* attach = std::get_if<AttachRobot>(&change);
+  const Robot* robot = attach == nullptr ? nullptr : find_robot(scene, attach->robot);
+  if (robot == nullptr) return std::nullopt;
+  return Attach{.object = robot->links.front().name,
+                .to = attach->to,
+                .carrier_from_object = attach->carrier_from_root,
+                .overlap = attach->overlap,
+                .far = attach->far};
+}
+
 std::optional<Attach> as_attached(const Attach& change, std::span<const CellChange> later,
                                   const Scene& scene) {
-  const auto elsewhere = [&change](const CellChange& each) {
-    return std::visit(PutsElsewhere{change.object}, each);
-  };
+  PutsElsewhere puts{change.object, ""};
+  for (const Robot& robot : scene.robots)
+    if (robot.links.front().name == change.object) puts.robot = robot.name;
+  const auto elsewhere = [&puts](const CellChange& each) { return std::visit(puts, each); };
   const Object* const object = find_object(scene, change.object);
   if (object == nullptr || std::ranges::any_of(later, elsewhere)) return std::nullopt;
   Attach attached = change;

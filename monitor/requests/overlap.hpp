@@ -22,6 +22,9 @@ inline constexpr double kDefaultOverlap = 1e-3;
 // refused, m, unless the change says that it is far.
 inline constexpr double kFarFromCarrier = 0.5;
 
+// Returns the attachment of a change: of a robot, that of its root link. Nothing: it has none.
+[[nodiscard]] std::optional<Attach> attachment_in(const CellChange& change, const Scene& scene);
+
 // Returns the change with the pose that the object has in `scene`, to which the whole list leads.
 // `later`: the changes after this one. Nothing: by one of them it is not attached there any more,
 // or is attached once more.

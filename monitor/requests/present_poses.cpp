@@ -7,8 +7,8 @@ namespace clearance {
 
 std::optional<AttachedCarrier> carrier_of(const std::string& name, const Scene& scene) {
   for (const Robot& robot : scene.robots) {
-    if (!robot.is_attached || robot.links.front().name != name) continue;
     const RobotBase& base = robot.base;
+    if (base.kind == RobotBase::Kind::kWorld || robot.links.front().name != name) continue;
     return AttachedCarrier{base.kind == RobotBase::Kind::kObject
                                ? scene.objects[base.object].name
                                : scene.robots[base.robot].links[base.link].name,
@@ -21,6 +21,49 @@ const Object* find_object(const Scene& scene, const std::string& name) noexcept 
   const auto found = std::ranges::find(scene.objects, name, &Object::name);
   return found == scene.objects.end() ? nullptr : &*found;
 }
+
+const Robot* find_robot(const Scene& scene, const std::string& name) noexcept {
+  const auto found = std::ranges::find_if(
+      scene.robots, [&](const Robot& robot) { return !robot.is_attached && robot.name == name; });
+  return found == scene.robots.end() ? nullptr : &*found;
+}
+
+namespace {
+
+// The root of the robot that has this link; nothing: it is the root itself, or no link.
+std::optional<std::string> root_above(const std::string& link, const Scene& scene) {
+  for (const Robot& robot : scene.robots) {
+    if (std::ranges::find(robot.links, link, &RobotLink::name) == robot.links.end()) continue;
+    if (robot.links.front().name == link) return std::nullopt;
+    return robot.links.front().name;
+  }
+  return std::nullopt;
+}
+
+// Tells it of a link without shapes by the other links.
+bool is_absent(const Robot& robot, const Scene& scene) {
+  return std::ranges::any_of(robot.links, [&](const RobotLink& link) {
+    return link.object != RobotLink::kNoObject && scene.objects[link.object].absent;
+  });
+}
+
+// Tells whether the base of the robot with this root is in both scenes the same.
+bool has_same_base(const std::string& root, const Scene& a, const Scene& b) {
+  const auto in_a = carrier_of(root, a), in_b = carrier_of(root, b);
+  if (in_a.has_value() != in_b.has_value()) return false;
+  if (in_a) {
+    return in_a->name == in_b->name &&
+           same_pose(in_a->carrier_from_object, in_b->carrier_from_object);
+  }
+  const auto world_from_root = [&](const Scene& scene) {
+    for (const Robot& robot : scene.robots)
+      if (robot.links.front().name == root) return robot.base.base_from_root;
+    return Pose{};
+  };
+  return same_pose(world_from_root(a), world_from_root(b));
+}
+
+}  // namespace
 
 std::vector<std::string> with_carriers(const std::vector<std::string>& names, const Scene& scene) {
   std::vector<std::string> all = names;
@@ -48,6 +91,9 @@ PresentPose pose_in_changed(const std::string& name, const Scene& changed, const
   // A pose from before is none of an object that moves by itself only now.
   const Object* const before = find_object(running, name);
   if (before != nullptr && (before->fixed || carrier_of(name, running))) return {};
+  // Where the links of a robot on another base are follows from joints, which are not read here.
+  if (const auto root = root_above(name, changed); root && !has_same_base(*root, changed, running))
+    return {};
   return found->second;
 }
 
@@ -63,10 +109,22 @@ std::optional<PresentPoses> present_poses(const std::vector<std::string>& names,
   }
   PresentPoses poses;
   if (bodies.empty()) return poses;
+  const std::vector<SceneBody> asked = bodies;
   PoseQuestion question(std::move(bodies));
   if (!loop.ask(question, loop_ended)) return std::nullopt;
-  for (std::size_t i = 0; i < known.size(); ++i) poses[known[i]] = question.poses()[i];
+  for (std::size_t i = 0; i < known.size(); ++i) {
+    poses[known[i]] = question.poses()[i];
+    if (asked[i].is_link && is_absent(scene.robots[asked[i].robot], scene))
+      poses[known[i]] = {.state = PresentPose::State::kAbsent};
+  }
   return poses;
+}
+
+std::optional<std::vector<PresentJoint>> present_joints(const Scene& scene, TickLoop& loop,
+                                                        const std::atomic<bool>& loop_ended) {
+  PoseQuestion question({}, scene.variables.size());
+  if (!loop.ask(question, loop_ended)) return std::nullopt;
+  return std::vector<PresentJoint>(question.joints().begin(), question.joints().end());
 }
 
 Pose a_from_b(const Pose& world_from_a, const Pose& world_from_b) {

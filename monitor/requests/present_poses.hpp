@@ -21,10 +21,17 @@ using PresentPoses = std::map<std::string, PresentPose>;
                                                         const Scene& scene, TickLoop& loop,
                                                         const std::atomic<bool>& loop_ended);
 
+// Returns where the joint variables of the scene are, in their order, likewise.
+[[nodiscard]] std::optional<std::vector<PresentJoint>> present_joints(
+    const Scene& scene, TickLoop& loop, const std::atomic<bool>& loop_ended);
+
+// Null: the scene has no robot of this name.
+[[nodiscard]] const Robot* find_robot(const Scene& scene, const std::string& name) noexcept;
+
 // Null: the scene has no such object.
 [[nodiscard]] const Object* find_object(const Scene& scene, const std::string& name) noexcept;
 
-// The carrier of an attached object, and the object's pose in the carrier's frame.
+// The carrier of an attached object or of a robot's root link, and the pose in its frame.
 struct AttachedCarrier {
   std::string name;
   Pose carrier_from_object;

@@ -101,11 +101,13 @@ class SceneCommander {
   Refusal take_files(Work& work);
   Refusal take_texts(Work& work);
   Refusal take_poses(Work& work);
+  Refusal take_positions(Work& work);
   std::variant<Pose, CommandRefusal> pose_of(const std::string& name, const Work& work,
                                              std::size_t change, const PresentPoses& poses);
   Refusal check(const Work& work, const Cell& cell);
   // Returns why a client's command may not have this file read; nothing: it may.
   std::optional<std::string> refusal_of(const std::filesystem::path& file);
+  Refusal check_leap(const CellChange& change, std::size_t place, const Scene& changed);
   Refusal check_overlaps(const Work& work, const Cell& cell);
   Refusal put_in_force(const Work& work, Cell cell);
   [[nodiscard]] bool is_allowed(const std::filesystem::path& file) const;

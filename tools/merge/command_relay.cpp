@@ -33,13 +33,18 @@ CommandResult answer_to(const Command& asked, CommandResult of_share) {
   return of_share;
 }
 
-// Each share would find another pose, or none: the scenes would differ.
+// Each share would find another pose or position, or none: the scenes would differ.
 std::optional<std::uint32_t> needs_a_pose(const Command& command) {
   for (std::uint32_t i = 0; i < command.changes.size(); ++i) {
     const auto* const attach = std::get_if<Attach>(&command.changes[i]);
     const auto* const detach = std::get_if<Detach>(&command.changes[i]);
+    const auto* const attach_robot = std::get_if<AttachRobot>(&command.changes[i]);
+    const auto* const detach_robot = std::get_if<DetachRobot>(&command.changes[i]);
     if ((attach != nullptr && !attach->carrier_from_object) ||
-        (detach != nullptr && !detach->world_from_object))
+        (detach != nullptr && !detach->world_from_object) ||
+        (attach_robot != nullptr && !attach_robot->carrier_from_root) ||
+        (detach_robot != nullptr && (!detach_robot->world_from_root ||
+                                     (!detach_robot->powered && detach_robot->joints.empty()))))
       return i;
   }
   return std::nullopt;

@@ -12,8 +12,9 @@
 namespace clearance {
 namespace {
 
-// The position nearest to 0 within the limits.
+// The position that the cell states, or that nearest to 0 within the limits.
 double rest_of(const JointVariable& variable) noexcept {
+  if (variable.is_held()) return variable.held;
   return std::clamp(0.0, variable.lower, std::max(variable.lower, variable.upper));
 }
 

@@ -24,6 +24,7 @@ bool is_bounded(const JointVariable& variable) noexcept {
 Swing swing_of(const JointVariable& variable, double share, double free_amplitude,
                std::size_t number) {
   Swing swing;
+  if (variable.is_held()) return {.centre = variable.held};
   swing.centre = is_bounded(variable) ? 0.5 * (variable.lower + variable.upper) : 0.0;
   swing.amplitude =
       is_bounded(variable) ? 0.5 * share * (variable.upper - variable.lower) : free_amplitude;

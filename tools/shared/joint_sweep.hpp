@@ -15,7 +15,7 @@ namespace clearance {
 
 // Every position swings about the middle of its limits with a frequency of its own. It moves
 // through a share of its range, at most at half its velocity limit. A joint without limits
-// swings through a quarter turn to either side.
+// swings through a quarter turn to either side. One that the cell holds stands.
 class JointSweep {
  public:
   static constexpr double kUsualShare = 0.9;

@@ -26,8 +26,9 @@ std::string carrier_of(const Scene& scene, const RobotBase& base) {
 std::map<std::string, std::string> carriers_of(const Scene& scene) {
   std::map<std::string, std::string> carriers;
   for (const Robot& robot : scene.robots) {
-    if (robot.is_attached)
-      carriers.emplace(robot.links.front().name, carrier_of(scene, robot.base));
+    if (robot.base.kind == RobotBase::Kind::kWorld) continue;
+    carriers.emplace(robot.is_attached ? robot.links.front().name : robot.name,
+                     carrier_of(scene, robot.base));
   }
   return carriers;
 }

@@ -1,5 +1,5 @@
-// Names what a change of the cell changes for a person: the objects, what carries them, and the
-// contacts that are allowed.
+// Names what a change of the cell changes for a person: objects and tools, what carries them, and
+// the contacts that are allowed.
 #pragma once
 
 #include <cstdint>

@@ -1,5 +1,6 @@
 // An example of a program beside the daemon: an arm that keeps away from obstacles by the daemon's
-// gradients, tells it what it holds, asks it before each motion, or stops for a person.
+// gradients, tells it what it holds, asks it before each motion, stops for a person, or changes its
+// tool.
 #include <cstdio>
 #include <string>
 #include <utility>
@@ -17,6 +18,7 @@
 #include "monitor/examples/arm/avoid.hpp"
 #include "monitor/examples/arm/pick.hpp"
 #include "monitor/examples/arm/stops.hpp"
+#include "monitor/examples/arm/tools.hpp"
 
 namespace clearance {
 namespace {
@@ -30,10 +32,11 @@ constexpr const char* kFooter = R"(Exit status:
   5  stopped, or the daemon did not answer
   6  the daemon refused a command
 
-Examples, beside clearanced config/cells/avoid.yaml --partition lab, or pick.yaml, stops.yaml:
+Examples, beside clearanced config/cells/avoid.yaml --partition lab, or pick.yaml, stops.yaml, tools.yaml:
   build/bin/example_arm avoid config/cells/avoid.yaml --partition lab
   build/bin/example_arm pick config/cells/pick.yaml --partition lab
   build/bin/example_arm stops config/cells/stops.yaml --partition lab
+  build/bin/example_arm tools config/cells/tools.yaml --partition lab --changes 100
   build/bin/example_arm ask config/cells/pick.yaml --partition lab    # clearanced --questions "example arm")";
 
 struct Arguments {
@@ -42,6 +45,7 @@ struct Arguments {
   avoid::RunOptions avoid;
   pick::RunOptions pick;
   stops::RunOptions stops;
+  tools::RunOptions tools;
   double speed = 1.0;  // of the jogs that are asked about
 };
 
@@ -141,6 +145,29 @@ int stop_thrice(const Cell& cell, client::Connection& connection, Arguments& arg
   return kOk;
 }
 
+// A gripper and a torch come and go while a person walks past.
+int change_tools(const Cell& cell, client::Connection& connection, Arguments& arguments,
+                 StopSignal& signal) {
+  const tools::RunResult result =
+      tools::run(cell, connection, arguments.tools, [&signal] { return !signal.wait(0); });
+  if (!result.refusal.empty()) {
+    print(stderr, "example_arm: a command was refused: {}\n", result.refusal);
+    return kRefused;
+  }
+  if (!result.heard) {
+    return no_answer(connection,
+                     "reports or results came; does clearanced run, with config/cells/tools.yaml,");
+  }
+  const std::vector<double>& ms = result.commands_ms;
+  print(stdout, "{:>7} {:>8} {:>6} {:>7}  {:>14} {:>5}  {:>9}  {:<20} {:>21}\n", "changes",
+        "reports", "missed", "unknown", "bounds checked", "false", "nearest m", "pair",
+        "change ms, p50 / max");
+  print(stdout, "{:>7} {:>8} {:>6} {:>7}  {:>14} {:>5}  {:>9.4f}  {:<20} {:>12.1f} / {:<6.1f}\n",
+        result.changes, result.reports, result.missed, result.unknown, result.compared,
+        result.wrong, result.least_distance_m, result.nearest, ms[ms.size() / 2], ms.back());
+  return kOk;
+}
+
 const char* name_of(jog::Decision decision) {
   switch (decision) {
     case jog::Decision::kMade:
@@ -182,7 +209,7 @@ int run(int argc, char** argv, StopSignal& signal) {
   Arguments arguments;
   CommandLine line{
       "An arm beside the daemon that avoids obstacles, carries a part, asks first, "
-      "or stops for a person.",
+      "stops for a person, or changes its tool.",
       kFooter};
   line.subcommands = {
       kind(arguments, "avoid",
@@ -202,6 +229,9 @@ int run(int argc, char** argv, StopSignal& signal) {
            "Works beside a person: by distance zones, by S_p, and by how it stops",
            {{"--seconds", &arguments.stops.seconds, "Length of each run", number_in(2.0, 3600.0),
              shown()}}),
+      kind(arguments, "tools", "Attaches and detaches a gripper and a torch beside a person",
+           {{"--changes", &arguments.tools.changes, "Tools that come or go", number_in(1.0, 1e6),
+             shown()}}),
   };
   if (const auto done = parse(line, argc, argv)) return *done;
   start_log("example_arm", "error");
@@ -212,6 +242,7 @@ int run(int argc, char** argv, StopSignal& signal) {
   if (line.chosen == "avoid") return avoid_twice(*cell, connection, arguments, signal);
   if (line.chosen == "pick") return pick_twice(connection, arguments, signal);
   if (line.chosen == "stops") return stop_thrice(*cell, connection, arguments, signal);
+  if (line.chosen == "tools") return change_tools(*cell, connection, arguments, signal);
   return ask_each(connection, arguments, signal);
 }
 

@@ -68,8 +68,10 @@ TEST(ChangeReader, ReadsEveryKindInTheOrderOfTheText) {
 - replace_object: {name: box, fixed: true, sphere: {radius: 6}}
 - allow_contact: {contact: grip, between: [part, fingers], depth: 0.002, until: {distance: 0.01, cycle: 900}, by: planner, reason: it is gripped}
 - withdraw_contact: {contact: grip}
+- attach_robot: {robot: gripper, to: flange, pose: {xyz: [0, 0, 0.1]}, far: true}
+- detach_robot: {robot: gripper, joints: {left: 0.01}, absent: true}
 )");
-  ASSERT_EQ(changes.size(), 17u);
+  ASSERT_EQ(changes.size(), 19u);
   EXPECT_EQ(std::get<AddObject>(changes[0]).yaml, "{name: box, fixed: true, sphere: {radius: 5}}");
   const auto& bin = std::get<AddFromTemplate>(changes[1]);
   EXPECT_EQ(bin.template_name, "bin");
@@ -105,6 +107,14 @@ TEST(ChangeReader, ReadsEveryKindInTheOrderOfTheText) {
   EXPECT_EQ(contact.end, (ContactEnd{.distance = 0.01, .last_cycle = 900}));
   EXPECT_EQ(contact.by, "planner");
   EXPECT_EQ(std::get<WithdrawContact>(changes[16]).contact, "grip");
+  const auto& attach_robot = std::get<AttachRobot>(changes[17]);
+  EXPECT_EQ(attach_robot.robot + attach_robot.to, "gripperflange");
+  EXPECT_EQ(attach_robot.carrier_from_root.value().position, Vec3(0, 0, 0.1));
+  EXPECT_TRUE(attach_robot.far);
+  const auto& detach_robot = std::get<DetachRobot>(changes[18]);
+  ASSERT_EQ(detach_robot.joints.size(), 1u);
+  EXPECT_EQ(detach_robot.joints[0].position, 0.01);
+  EXPECT_TRUE(detach_robot.absent && !detach_robot.powered);
 }
 
 // The block of YAML in idl/COMMANDS.md, which names the file of another cell.

@@ -25,6 +25,7 @@ struct DrawnNames {
   std::vector<std::string> objects, added;
   std::vector<std::string> attached = {};  // objects that are attached, as far as that is known
   std::vector<std::string> carriers;       // what only carries: links
+  std::vector<std::string> robots = {"no_robot"}, joints = {"no_joint"};
   std::vector<std::string> groups, templates, zones, contacts, sources;
   std::vector<std::string> cells, files;  // texts for ReplaceCell, files for ReadCellAgain
   std::vector<std::string> shapes;        // of objects that are added: "sphere: {radius: 50}"
@@ -129,6 +130,14 @@ class DrawnChange {
   CellChange make(std::type_identity<Detach>) {
     return Detach{names_.attached.empty() || one_in(4) ? object() : one_of(names_.attached),
                   maybe_pose()};
+  }
+  CellChange make(std::type_identity<AttachRobot>) {
+    return AttachRobot{one_of(names_.robots), carrier(), maybe_pose(), maybe(0.01), one_in(2)};
+  }
+  CellChange make(std::type_identity<DetachRobot>) {
+    std::vector<JointPosition> joints;
+    if (one_in(2)) joints.push_back({one_of(names_.joints), random_.uniform(-0.1, 1.0)});
+    return DetachRobot{one_of(names_.robots), maybe_pose(), joints, one_in(2), one_in(4)};
   }
   CellChange make(std::type_identity<Place>) { return Place{object(), pose()}; }
   CellChange make(std::type_identity<SetMaxSpeed>) {

@@ -91,6 +91,13 @@ inline void expect_same(const Cell& a, const Cell& b) {
     EXPECT_EQ(x.base_from_root.position, y.base_from_root.position);
     EXPECT_EQ(x.base_from_root.orientation.coeffs(), y.base_from_root.orientation.coeffs());
   }
+  ASSERT_EQ(a.scene.variables.size(), b.scene.variables.size());
+  for (std::size_t i = 0; i < a.scene.variables.size(); ++i) {
+    const JointVariable &x = a.scene.variables[i], &y = b.scene.variables[i];
+    EXPECT_EQ(x.is_held(), y.is_held());
+    EXPECT_EQ(x.is_read, y.is_read);
+    EXPECT_TRUE(!x.is_held() || x.held == y.held);
+  }
   ASSERT_EQ(a.scene.pairs.size(), b.scene.pairs.size());
   for (std::size_t i = 0; i < a.scene.pairs.size(); ++i) {
     EXPECT_EQ(a.scene.pairs[i].first, b.scene.pairs[i].first);

@@ -27,6 +27,8 @@ TEST_F(CellEdits, RandomListsGiveTheCellOfTheirText) {
       .objects = {"table", "cart", "box", "spare", "hand", "base", "none", "p0", "p1", "p2", "p3"},
       .added = {"p0", "p1", "p2", "p3"},
       .carriers = {"tip", "hand", "base"},
+      .robots = {"arm", "arm", "none"},
+      .joints = {"swing", "swing", "none"},
       .groups = {"things", "things", "arm", "none"},
       .templates = {"bin", "bin", "bin", "none"},
       .zones = {"stop", "stop", "none"},

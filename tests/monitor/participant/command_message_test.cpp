@@ -32,6 +32,10 @@ std::vector<CellChange> every_change() {
           Attach{"part", "hand"},
           Detach{"part", turned()},
           Detach{"part"},
+          AttachRobot{"gripper", "flange", turned(), 0.002, true},
+          AttachRobot{"gripper", "flange"},
+          DetachRobot{"gripper", turned(), {{"left", 0.01}, {"right", -0.02}}, true, true},
+          DetachRobot{"gripper"},
           Place{"table", turned()},
           SetMaxSpeed{"cart", 1.5},
           SetMaxSpeed{"cart", std::nullopt},
@@ -109,7 +113,13 @@ TEST(CommandMessage, KeepsEveryFieldOfEveryChange) {
   EXPECT_TRUE(attach.far);
   EXPECT_FALSE(std::get<Attach>(read.changes[7]).carrier_from_object);
   EXPECT_FALSE(std::get<Attach>(read.changes[7]).overlap);
-  EXPECT_EQ(std::get<SetPair>(read.changes[20]).rule, SetPair::Rule::kLeaveOut);
+  EXPECT_EQ(std::get<SetPair>(read.changes[24]).rule, SetPair::Rule::kLeaveOut);
+  const auto& detach = std::get<DetachRobot>(read.changes[12]);
+  ASSERT_EQ(detach.joints.size(), 2u);
+  EXPECT_EQ(detach.joints[1].joint, "right");
+  EXPECT_EQ(detach.joints[1].position, -0.02);
+  EXPECT_TRUE(detach.powered && detach.absent);
+  EXPECT_FALSE(std::get<AttachRobot>(read.changes[11]).carrier_from_root);
   const std::size_t contact = read.changes.size() - 3;
   EXPECT_EQ(std::get<AllowContact>(read.changes[contact]).end, (ContactEnd{0.01, 5, 6, 7}));
   EXPECT_EQ(std::get<AllowContact>(read.changes[contact + 1]).end, ContactEnd{});
@@ -125,6 +135,10 @@ TEST(CommandMessage, DiffersInItsBytesForEachField) {
       {Detach{"a", turned()}, Detach{"a"}},
       {AddFromTemplate{"t", "a", {"g"}}, AddFromTemplate{"t", "a", {"h"}}},
       {Place{"a", turned()}, Place{"a"}},
+      {AttachRobot{"a", "b", turned()}, AttachRobot{"a", "b"}},
+      {DetachRobot{"a", {}, {{"j", 1.0}}}, DetachRobot{"a", {}, {{"j", 2.0}}}},
+      {DetachRobot{"a", {}, {{"j", 1.0}}}, DetachRobot{"a", {}, {{"k", 1.0}}}},
+      {DetachRobot{"a", {}, {}, true}, DetachRobot{"a", {}, {}, false, true}},
       {AllowContact{"c", "a", "b", 0.1, {}, "x", "y"},
        AllowContact{"c", "a", "b", 0.2, {}, "x", "y"}},
       {ReadCellAgain{"a"}, ReadCellAgain{"b"}}};
@@ -173,15 +187,20 @@ TEST(CommandMessage, IsRefusedByTheFieldThatHasNoValue) {
        [&](Message& m) {
          change(m, 8).detach.world_from_object.value.orientation = {0, 0, 0, 0};
        }},
-      {"changes[11].set_max_speed.m_per_s",
-       [&](Message& m) { change(m, 11).set_max_speed.m_per_s.value = -INFINITY; }},
-      {"changes[17].set_source.source",
-       [&](Message& m) { put(change(m, 17).set_source.source.value, ""); }},
-      {"changes[19].set_pair.rule", [&](Message& m) { change(m, 19).set_pair.rule = 5; }},
-      {"changes[20].set_pair.reason",
-       [&](Message& m) { put(change(m, 20).set_pair.reason, std::string(1001, 'r')); }},
-      {"changes[22].set_zone_thresholds.leave_above",
-       [&](Message& m) { change(m, 22).set_zone_thresholds.leave_above = kNaN; }},
+      {"changes[10].attach_robot.to", [&](Message& m) { put(change(m, 10).attach_robot.to, ""); }},
+      {"changes[12].detach_robot.joints[1].joint",
+       [&](Message& m) { put(change(m, 12).detach_robot.joints._buffer[1].joint, ""); }},
+      {"changes[12].detach_robot.joints[0].position",
+       [&](Message& m) { change(m, 12).detach_robot.joints._buffer[0].position = kNaN; }},
+      {"changes[15].set_max_speed.m_per_s",
+       [&](Message& m) { change(m, 15).set_max_speed.m_per_s.value = -INFINITY; }},
+      {"changes[21].set_source.source",
+       [&](Message& m) { put(change(m, 21).set_source.source.value, ""); }},
+      {"changes[23].set_pair.rule", [&](Message& m) { change(m, 23).set_pair.rule = 5; }},
+      {"changes[24].set_pair.reason",
+       [&](Message& m) { put(change(m, 24).set_pair.reason, std::string(1001, 'r')); }},
+      {"changes[26].set_zone_thresholds.leave_above",
+       [&](Message& m) { change(m, 26).set_zone_thresholds.leave_above = kNaN; }},
       {"files[0].name", [&](Message& m) { put(m.files._buffer[0].name, "../x"); }},
       {"files[0].name", [&](Message& m) { put(m.files._buffer[0].name, ".hidden"); }},
       {"files[1].name", [&](Message& m) { put(m.files._buffer[1].name, "part.stl"); }},

@@ -51,6 +51,15 @@ struct ChangeText {
   std::string operator()(const Detach& c) const {
     return row("Detach", c.object, c.world_from_object);
   }
+  std::string operator()(const AttachRobot& c) const {
+    return row("AttachRobot", c.robot, c.to, c.carrier_from_root, c.overlap, c.far);
+  }
+  std::string operator()(const DetachRobot& c) const {
+    std::string joints;
+    for (const JointPosition& joint : c.joints)
+      joints += fmt::format(" {} {}", joint.joint, joint.position);
+    return row("DetachRobot", c.robot, c.world_from_root, c.powered, c.absent) + joints;
+  }
   std::string operator()(const Place& c) const {
     return row("Place", c.object, c.world_from_object);
   }

@@ -56,6 +56,12 @@ class HandPoses final : public PoseSource {
     pose_ = pose;
     is_sent_ = true;
   }
+  // Sends these positions, of the first joint variables, and no pose.
+  void put_joints(std::vector<double> positions) {
+    const std::lock_guard lock(mutex_);
+    positions_ = std::move(positions);
+    is_sent_ = true;
+  }
   // Waits until two more batches were taken: the first one may have begun before.
   void settle() const {
     const std::uint64_t taken = taken_;
@@ -68,7 +74,13 @@ class HandPoses final : public PoseSource {
     const std::lock_guard lock(mutex_);
     if (!is_sent_) return nullptr;
     ++batch_.sequence_number;
-    batch_.samples.resize(times_);
+    batch_.joints.resize(positions_.size());
+    for (std::uint32_t i = 0; i < positions_.size(); ++i) {
+      batch_.joints[i].variable = i;
+      batch_.joints[i].position = positions_[i];
+      batch_.joints[i].stamp_ns = SystemClock().realtime_ns();
+    }
+    batch_.samples.resize(positions_.empty() ? times_ : 0);
     for (PoseSample& sample : batch_.samples) {
       sample.stamp_ns = SystemClock().realtime_ns();
       sample.world_from_object = pose_;
@@ -79,6 +91,7 @@ class HandPoses final : public PoseSource {
  private:
   std::mutex mutex_;
   Pose pose_;
+  std::vector<double> positions_;
   std::size_t times_ = 1;
   bool is_sent_ = false, is_turn_ = false;
   std::atomic<std::uint64_t> taken_{0};
