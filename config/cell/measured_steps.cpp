@@ -50,6 +50,15 @@ std::vector<std::size_t> chain_to(const Robot& robot, std::size_t link) {
   return chain;
 }
 
+// Of what stands on a robot, kg. A tool that is absent has none.
+double mass_of(const Robot& robot, const ObjectList& list) {
+  if (robot.is_attached) return list.objects[robot.links.front().object].mass;
+  const bool is_absent = std::ranges::any_of(robot.links, [&](const RobotLink& link) {
+    return link.object != RobotLink::kNoObject && list.objects[link.object].absent;
+  });
+  return is_absent ? 0.0 : robot.mass;
+}
+
 // The mass that a robot carries, kg; nothing: something has none stated.
 std::optional<double> carried(std::uint32_t robot, const RobotList& robots,
                               const ObjectList& list) {
@@ -59,8 +68,7 @@ std::optional<double> carried(std::uint32_t robot, const RobotList& robots,
   for (std::size_t i = robot + 1; i < robots.robots.size(); ++i) {
     const Robot& of = robots.robots[i];
     is_on_it[i] = of.base.kind == RobotBase::Kind::kLink && is_on_it[of.base.robot];
-    if (!is_on_it[i] || !of.is_attached) continue;
-    mass += list.objects[of.links.front().object].mass;
+    if (is_on_it[i]) mass += mass_of(of, list);
   }
   return std::isfinite(mass) ? std::optional(mass) : std::nullopt;
 }

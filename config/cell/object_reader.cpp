@@ -97,8 +97,7 @@ void ObjectReader::read(const YamlNode& node, ObjectList& list) {
   list.names_known = list.names_known && name.has_value();
   const YamlNode* fixed = map.optional("fixed");
   if (fixed != nullptr) object.fixed = read_flag(*fixed, diagnostics_).value_or(false);
-  if (const YamlNode* mass = map.optional("mass"))
-    object.mass = read_number(*mass, kMasses, "a mass in kg", diagnostics_).value_or(kInfinity);
+  object.mass = read_mass(map, diagnostics_);
   if (const YamlNode* absent = map.optional("absent"))
     object.absent = read_flag(*absent, diagnostics_).value_or(false);
   const YamlNode* attached = map.optional("attached");
@@ -226,6 +225,12 @@ void ObjectReader::read_attached(MapReader& map, Object& object) {
 }
 
 }  // namespace
+
+double read_mass(MapReader& map, Diagnostics& diagnostics) {
+  const YamlNode* const mass = map.optional("mass");
+  if (mass == nullptr) return kInfinity;
+  return read_number(*mass, kMasses, "a mass in kg", diagnostics).value_or(kInfinity);
+}
 
 std::optional<std::string> read_source(const YamlNode& node, Diagnostics& diagnostics) {
   auto name = read_name(node, "a source's name", diagnostics);

@@ -29,6 +29,9 @@ struct ObjectDefaults {
   PartLimits mesh_limits;
 };
 
+// Reads `mass`, kg; infinity: it is not stated.
+[[nodiscard]] double read_mass(MapReader& map, Diagnostics& diagnostics);
+
 // Reads the name of a source, at most as long as a batch can carry; returns nothing after a
 // diagnostic.
 [[nodiscard]] std::optional<std::string> read_source(const YamlNode& node,

@@ -44,6 +44,7 @@ struct RobotKeys {
   ObjectDefaults limits;
   std::int64_t frozen_limit_ns = 0;  // of all joints
   bool absent = false;
+  double mass = kInfinity;  // kg
 };
 
 class RobotReader {
@@ -150,6 +151,7 @@ RobotKeys RobotReader::read_keys(const YamlNode& node) {
   }
   if (const YamlNode* absent = map.optional("absent"))
     keys.absent = read_flag(*absent, diagnostics_).value_or(false);
+  keys.mass = read_mass(map, diagnostics_);
   keys.joints_node = map.optional("joints");
   keys.stopping_node = map.optional("stopping");
   read_joint_topic(map, keys);
@@ -316,6 +318,7 @@ bool RobotReader::read(const YamlNode& node, RobotList& list) {
   robot.prefix = keys.prefix;
   robot.joint_states = keys.joint_states;
   robot.stamps = keys.stamps;
+  robot.mass = keys.mass;
   if (!description || keys.name.empty()) return false;
   if (!has_names_of_its_own(keys, {robot, description->model.variables})) return false;
   const Membership membership =

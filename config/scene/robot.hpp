@@ -140,6 +140,8 @@ struct Robot {
   bool is_attached = false;
   std::vector<RobotLink> links;  // the root first
   std::vector<RobotJoint> joints;
+  // Of a tool, kg; infinity: not stated. Of what is attached, Object::mass counts.
+  double mass = std::numeric_limits<double>::infinity();
   RobotStops stopping = {};        // stated
   std::vector<std::string> notes;  // for the log: what was left out, and why
 

@@ -61,6 +61,23 @@ TEST_F(MeasuredSteps, OfTheLoadFollowFromTheMassesOfWhatIsAttached) {
       mistake_at("cell.yaml:4", "found 10.5 kg on the robot 'arm', 105 %", "at most 100 %"));
 }
 
+TEST_F(MeasuredSteps, OfTheLoadCountToolsWithJoints) {
+  test::write_text(folder_ / "tool.urdf",
+                   R"(<robot name="tool"><link name="root"><collision><geometry>
+                        <sphere radius="0.02"/></geometry></collision></link></robot>)");
+  const auto most_with = [&](const std::string& more) {
+    std::string text = with("load: {full: 10, tool: 3}");
+    text.insert(
+        text.find("objects:"),
+        "  - {name: tool, urdf: tool.urdf, prefix: t_, attached: {to: hand}" + more + "}\n");
+    return most(scene(text));
+  };
+  EXPECT_NEAR(most_with(", mass: 2"), 13, 1e-9);
+  EXPECT_NEAR(most_with(", mass: 3"), 23, 1e-9);
+  EXPECT_NEAR(most_with(""), 23, 1e-9) << "its mass is unknown";
+  EXPECT_NEAR(most_with(", absent: true"), 13, 1e-9);
+}
+
 TEST_F(MeasuredSteps, OfTheExtensionHaveAllJointsAndTheWorstLast) {
   const Scene arm = scene(with("load: 50, extension: {link: hand, reach: 2}"));
   const RobotStops& stops = arm.robots[0].stopping;
