@@ -18,6 +18,7 @@ using pick::HandPoint;
 constexpr std::int64_t kEndNs = 5'000'000'000;  // without a report
 constexpr int kRows = 9;                        // waypoints of a jog
 constexpr double kSeconds = 0.6, kSlower = 3.0;
+constexpr double kRest = 0.01;                                  // s
 constexpr double kBin = 50.0 * 3.14159265358979323846 / 180.0;  // azimuth of a bin, rad
 
 const std::vector<std::string> kJointNames{"joint1", "joint2", "joint3", "joint4",
@@ -79,11 +80,16 @@ class Arm {
     return true;
   }
 
-  // Asks while the arm rests where it is. Its joint states go on, or they would be late.
+  // Asks while the arm rests where it is. Its joint states go on, or they would be late. The motion
+  // ends at rest: its last waypoint is stated again, later.
   std::optional<QuestionResult> ask(const JointTrajectory& motion) {
     Question question;
     question.motion = motion;
+    question.motion.times.push_back(motion.times.back() + kRest);
+    const std::vector<double> goal = positions_at(motion, motion.times.back());
+    question.motion.positions.insert(question.motion.positions.end(), goal.begin(), goal.end());
     question.margins = {kNear, kSlow};
+    question.stoppable = true;
     const std::vector<double> here = positions_at(motion, 0.0);
     const std::uint64_t request = questions_.post(question);
     const std::int64_t began_ns = client::now_ns();
