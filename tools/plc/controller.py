@@ -41,6 +41,10 @@ def layout_of(table):
     return int(re.search(r"layout (\d+)", table)[1])
 
 
+def period_of(table):
+    return float(re.search(r"period ([\d.]+) ms", table)[1])
+
+
 class Controller:
     """Reads the rows in blocks of at most 100 registers, each of which is of one instant. Bytes are in the order ABCD."""
 
@@ -101,7 +105,7 @@ def watch(controller, seconds, pid):
     return readings, killed_s
 
 
-def summary(rows, readings, killed_s, last):
+def summary(rows, readings, killed_s, last, period_ms):
     print_table(rows, last)
     good = [counts["good"] for _, counts in readings]
     print(f"{len(readings)} readings; good in {sum(good)} of them, {len({c['heartbeat'] for _, c in readings})} heartbeats")
@@ -111,10 +115,8 @@ def summary(rows, readings, killed_s, last):
     if not after:
         print("controller: THE FIGURES ARE NOT FAIL-SAFE")
         return 1
-    first_s, counts = after[0]
-    beat_s = next(at for at, seen in readings if seen["heartbeat"] == counts["heartbeat"])
-    print(f"the daemon was killed: figures were fail-safe {1e3 * (first_s - killed_s):.1f} ms later, "
-          f"{1e3 * (first_s - beat_s):.1f} ms after the last heartbeat was read")
+    first_s = after[0][0]
+    print(f"the daemon was killed: figures were fail-safe {1e3 * (first_s - killed_s):.1f} ms later; the period is {period_ms:g} ms")
     unsafe = {name for seen in [last, *(seen for _, seen in after)] for name, count in seen.items()
               if rows[name].address >= 10 and count != rows[name].safe_end}
     print(f"rows that were not at their safe ends from then on: {', '.join(sorted(unsafe)) or 'none'}")
@@ -148,9 +150,12 @@ def main():
     if controller.read()["layout"] != layout_of(table):
         print("controller: the registers are those of another table")
         return 1
+    end_s = time.monotonic() + 30.0  # the daemon may still split meshes
+    while not controller.read(1)["good"] and time.monotonic() < end_s:
+        time.sleep(0.05)
     readings, killed_s = watch(controller, arguments.seconds, arguments.kill)
     print("--- the registers at the end:")
-    status = summary(controller.rows, readings, killed_s, controller.read())
+    status = summary(controller.rows, readings, killed_s, controller.read(), period_of(table))
     if arguments.picture:
         draw(arguments.picture, controller.rows, readings, killed_s)
     return status
