@@ -70,7 +70,7 @@ TEST_F(MeasuredSteps, OfTheLoadCountToolsWithJoints) {
     text.insert(
         text.find("objects:"),
         "  - {name: tool, urdf: tool.urdf, prefix: t_, attached: {to: hand}" + more + "}\n");
-    return most(scene(text));
+    return most(scene(text + "  - {between: [tool, post]}\n"));
   };
   EXPECT_NEAR(most_with(", mass: 2"), 13, 1e-9);
   EXPECT_NEAR(most_with(", mass: 3"), 23, 1e-9);
