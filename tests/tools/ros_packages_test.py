@@ -32,6 +32,8 @@ KEYS = {
     "libgmp-dev": "libgmp",
     "libhwy-dev": None,
     "liblz4-dev": "liblz4-dev",
+    "libmodbus-dev": "libmodbus-dev",
+    "libmosquitto-dev": "mosquitto-dev",
     "libncurses-dev": "libncurses-dev",
     "libspdlog-dev": "spdlog",
     "libsqlite3-dev": "libsqlite3-dev",
