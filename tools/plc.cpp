@@ -106,7 +106,7 @@ int run_plc(const Cell& cell, const Arguments& arguments, StopSignal& signal) {
   plc::RegisterTable table(cell.plc);
   plc::ModbusServer modbus(cell.plc.modbus, table.words().size());
   client::Connection connection(arguments.dds.resolve(cell), cell.topics);
-  plc::ReportFigures figures(connection, cell.plc, cell.scene.rate_hz);
+  plc::ReportFigures figures(connection, cell);
   std::optional<plc::MqttPublisher> mqtt;
   if (!cell.plc.mqtt.host.empty()) mqtt.emplace(cell.plc);
   log_line(lines::kPlcStarted, cell.scene.name, connection.where(), modbus.address(),

@@ -152,6 +152,15 @@ def test_while_the_program_waits_for_the_daemon_everything_is_fail_safe(hall):
         assert alone.told("plc-fail-safe")
 
 
+def test_a_daemon_of_another_cell_makes_nothing_clear(hall, tmp_path):
+    cell = tmp_path / "other.yaml"
+    cell.write_text(HALL.replace("name: hall", "name: cellar"))
+    hall.place(3.3)
+    with Plc(hall, cell=cell) as plc:
+        row = plc.eventually(lambda row: row["cause"] == 8)
+        plc.expect_fail_safe(row)
+
+
 def test_a_mapping_of_the_cell_is_what_a_controller_decodes(hall, tmp_path):
     cell = tmp_path / "mapped.yaml"
     cell.write_text(HALL + MAPPING)

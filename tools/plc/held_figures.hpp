@@ -22,8 +22,9 @@ enum class Cause : std::uint8_t {
   kOtherDaemon = 5,
   kNoNames = 6,
   kNoSeparation = 7,
+  kOtherCell = 8,
 };
-inline constexpr std::array<std::string_view, 8> kCauses = {
+inline constexpr std::array<std::string_view, 9> kCauses = {
     "the figures are good",
     "no report has come since the start",
     "no report has come in the last period",
@@ -32,6 +33,7 @@ inline constexpr std::array<std::string_view, 8> kCauses = {
     "another daemon publishes, or the daemon was started again",
     "the names of the cell's zones and robots have not come",
     "no message about scaling and stops has come in the last period",
+    "the daemon watches another cell, by its name",
 };
 
 // A message that the daemon writes in every tick.

@@ -14,9 +14,9 @@ namespace {
 using client::list;
 
 // Two periods of messages may wait while the program is held up.
-client::StreamOptions options(const PlcSettings& settings, double rate_hz) {
-  const double waiting = 2e-9 * static_cast<double>(settings.period_ns) * rate_hz;
-  return {.old_after = std::chrono::nanoseconds(settings.period_ns),
+client::StreamOptions options(const Cell& cell) {
+  const double waiting = 2e-9 * static_cast<double>(cell.plc.period_ns) * cell.scene.rate_hz;
+  return {.old_after = std::chrono::nanoseconds(cell.plc.period_ns),
           .depth = 64 + static_cast<std::int32_t>(std::ceil(waiting))};
 }
 
@@ -35,22 +35,25 @@ double margin(double value, std::uint8_t validity) {
 
 }  // namespace
 
-ReportFigures::ReportFigures(client::Connection& connection, const PlcSettings& settings,
-                             double rate_hz)
-    : settings_(settings),
-      reports_(connection, options(settings, rate_hz)),
-      separation_(connection, options(settings, rate_hz)),
+ReportFigures::ReportFigures(client::Connection& connection, const Cell& cell)
+    : cell_(cell),
+      settings_(cell.plc),
+      reports_(connection, options(cell)),
+      separation_(connection, options(cell)),
       catalogue_(connection),
-      held_(settings.rows.size(), settings.period_ns),
-      places_(settings.rows.size()),
-      values_(settings.rows.size()) {}
+      held_(settings_.rows.size(), settings_.period_ns),
+      places_(settings_.rows.size()),
+      values_(settings_.rows.size()) {}
 
-bool ReportFigures::knows(std::uint64_t revision) {
-  if (revision == revision_) return true;
+// A change of the cell keeps its name.
+Cause ReportFigures::names_of(std::uint64_t revision) {
+  if (revision == revision_) return Cause::kNone;
   catalogue_.update();
   const clearance_msg_Catalogue* const names = catalogue_.message(revision);
-  if (names == nullptr) return false;
+  if (names == nullptr) return Cause::kNoNames;
+  if (names->scene != cell_.scene.name) return Cause::kOtherCell;
   revision_ = revision;
+  has_zones_ = names->zones._length > 0;
   is_separated_ = names->separated_zones._length + names->stopping_robots._length > 0;
   held_.need_separation(is_separated_);
   for (std::size_t i = 0; i < places_.size(); ++i) {
@@ -63,20 +66,24 @@ bool ReportFigures::knows(std::uint64_t revision) {
       if (row.robot == names->robots._buffer[robot]) places_[i].robot = robot;
     }
   }
-  return true;
+  return Cause::kNone;
 }
 
 void ReportFigures::fill(const clearance_msg_Distances& report) {
   const auto active = list(report.active_zones);
   for (std::size_t i = 0; i < values_.size(); ++i) {
     const PlcRow& row = settings_.rows[i];
+    const bool is_scaling = row.value == PlcValue::kSpeedScaling;
     values_[i] = kInfinite;
     if (row.value == PlcValue::kLeastDistance) values_[i] = report.lower_all;
     const bool is_whole = row.zone.empty() && row.robot.empty();
-    const bool is_by_zones = row.value == PlcValue::kSpeedScaling && is_whole && !is_separated_;
-    if (row.value != PlcValue::kClear && !is_by_zones) continue;
+    const bool is_by_zones = row.value == PlcValue::kClear || (is_scaling && is_whole);
+    const bool is_of_separation = is_scaling || row.value == PlcValue::kStopMargin;
+    if (is_of_separation && is_separated_) continue;  // the other message has it
+    if (is_of_separation && !is_by_zones) values_[i] = -kInfinite;
+    if (!is_by_zones) continue;
     const bool is_clear =
-        is_whole ? active.empty()
+        is_whole ? has_zones_ && active.empty()
                  : places_[i].zone && std::ranges::find(active, *places_[i].zone) == active.end();
     values_[i] = is_clear ? 1.0 : 0.0;
   }
@@ -109,7 +116,7 @@ void ReportFigures::take(client::Stream<Message>& stream, MessageKind kind, std:
   const std::int64_t period_ns = settings_.period_ns;
   while (stream.next()) {
     Cause cause = cause_of(stream.check(), stream->publish_ns);
-    if (cause == Cause::kNone && !knows(stream->scene_revision)) cause = Cause::kNoNames;
+    if (cause == Cause::kNone) cause = names_of(stream->scene_revision);
     if (cause != Cause::kNone) {
       if (kind == MessageKind::kDistances) held_.fail(cause, now_ns + period_ns);
       continue;

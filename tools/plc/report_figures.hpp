@@ -5,7 +5,7 @@
 #include <optional>
 #include <vector>
 
-#include "config/cell/plc_settings.hpp"
+#include "config/cell/cell.hpp"
 #include "monitor/client/client.hpp"
 #include "tools/plc/held_figures.hpp"
 
@@ -13,8 +13,8 @@ namespace clearance::plc {
 
 class ReportFigures {
  public:
-  // `settings` outlives this.
-  ReportFigures(client::Connection& connection, const PlcSettings& settings, double rate_hz);
+  // `cell` outlives this.
+  ReportFigures(client::Connection& connection, const Cell& cell);
 
   // Takes all reports that have come. `now_ns` is client::monotonic_ns().
   void update(std::int64_t now_ns);
@@ -25,12 +25,14 @@ class ReportFigures {
   struct Place {
     std::optional<std::uint32_t> zone, robot;
   };
-  [[nodiscard]] bool knows(std::uint64_t revision);
+  // Why ids of this scene mean nothing here; kNone: they are known.
+  [[nodiscard]] Cause names_of(std::uint64_t revision);
   template <class Message>
   void take(client::Stream<Message>& stream, MessageKind kind, std::int64_t now_ns);
   void fill(const clearance_msg_Distances& report);
   void fill(const clearance_msg_Separation& separation);
 
+  const Cell& cell_;
   const PlcSettings& settings_;
   client::Reports reports_;
   client::Separation separation_;
@@ -38,6 +40,7 @@ class ReportFigures {
   HeldFigures held_;
   std::uint64_t revision_ = 0;  // that of `places_`
   std::vector<Place> places_;   // by row
+  bool has_zones_ = false;      // the scene has zones
   bool is_separated_ = false;   // the scene has zones with `separation` or robots with `stopping`
   std::vector<double> values_;  // by row, of one message
 };
