@@ -88,7 +88,7 @@ TEST(View, ShowsHowMuchIsLeftBetweenAPersonAndARobot) {
   const json shown = lines_of(page).front();
   EXPECT_EQ(shown["errors"], json::array());
   const std::vector<std::string> measured = shown["measured"], lost = shown["lost"];
-  ASSERT_EQ(measured.size(), 6u);
+  ASSERT_EQ(measured.size(), 8u);
   EXPECT_EQ(measured[0], "people: person – robot");
   EXPECT_EQ(measured[1], "1700");  // mm
   // C, and the distance at 1.6 m/s during the robot's reaction and the age of the pose, up to the
@@ -98,7 +98,8 @@ TEST(View, ShowsHowMuchIsLeftBetweenAPersonAndARobot) {
   EXPECT_LE(protective, 260.0 + 1.6 * 300.0);
   EXPECT_NEAR(std::stod(measured[3]), 1700.0 - protective, 1.0);
   EXPECT_EQ(measured[4], "1.00");
-  EXPECT_THAT(lost, testing::ElementsAre(measured[0], "?", "?", "?", "0.00", "0.00"));
+  EXPECT_EQ(measured[6], "-") << "figures of stops are those of robots that state them";
+  EXPECT_THAT(lost, testing::ElementsAre(measured[0], "?", "?", "?", "0.00", "0.00", "-", "-"));
 }
 
 TEST(View, SpeaksFoxglovesProtocolToItsOwnClient) {
