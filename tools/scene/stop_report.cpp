@@ -56,9 +56,10 @@ std::string steps_of(const RobotStops& stops) {
   for (const StopStep& step : stops.steps)
     steps.push_back(fmt::format("{:g}", 100.0 * step.extension));
   return steps.empty() ? ""
-                       : fmt::format("\n  rows up to {} % of the extension, by the posture; here "
-                                     "those of the last step",
-                                     fmt::join(steps, ", "));
+                       : fmt::format(
+                             "\n  rows up to {} % of the extension, by the posture; here "
+                             "those of the last step",
+                             fmt::join(steps, ", "));
 }
 
 std::vector<double> speeds_of(const ShownJoint& shown) {
@@ -80,8 +81,8 @@ std::string stop_table(const Scene& scene) {
           "{}: category {}, brakes act after {:.0f} ms, the path is {}{}\n{:<24} {:>14} {:>14} "
           "{:>9}\n",
           robot.name, robot.stopping.category, 1e3 * robot.stopping.reaction,
-          robot.stopping.keeps_path ? "kept" : "left", steps_of(robot.stopping), "  joint", "from, per s", "goes on for",
-          "in, ms");
+          robot.stopping.keeps_path ? "kept" : "left", steps_of(robot.stopping), "  joint",
+          "from, per s", "goes on for", "in, ms");
     }
     for (const double speed : speeds_of(shown)) {
       text += fmt::format("  {:<22} {:>10.2f} {:<3} {:>10.3f} {:<3} {:>9.0f}\n", shown.joint.name,
