@@ -12,14 +12,17 @@
 namespace clearance {
 namespace {
 
-constexpr double kFarthest = 1e3;  // m: no arm is as long
+constexpr double kFarthest = 1e3;   // m: no arm is as long
+constexpr double kMostReach = 2.0;  // of the largest distance of a link from the axis
+constexpr double kRounding = 1e-9;  // of the sum of a few masses
 
 // The longest that the origin of a joint's child is from that of its parent, m.
 double longest_step(const RobotJoint& joint, std::span<const JointVariable> variables) {
   const double fixed = joint.parent_from_joint.position.norm();
   if (joint.type != JointType::kPrismatic) return fixed;
   const JointVariable& variable = variables[joint.variable];
-  const double slides = std::max(std::abs(variable.lower), std::abs(variable.upper));
+  const double slides =
+      std::max(std::abs(variable.lower), std::abs(variable.upper)) + variable.limit_tolerance;
   return fixed + std::abs(joint.multiplier) * slides + std::abs(joint.offset);
 }
 
@@ -77,7 +80,7 @@ std::optional<double> carried(std::uint32_t robot, const RobotList& robots,
 
 std::variant<Extension, std::string> measured_extension(const Robot& robot,
                                                         std::span<const JointVariable> variables,
-                                                        const std::string& link) {
+                                                        const std::string& link, double reach) {
   const auto found = std::ranges::find(robot.links, robot.prefix + link, &RobotLink::name);
   if (found == robot.links.end()) {
     std::vector<std::string> names;
@@ -87,6 +90,7 @@ std::variant<Extension, std::string> measured_extension(const Robot& robot,
                        did_you_mean(link, names));
   }
   Extension extension;
+  extension.reach = reach;
   extension.link = static_cast<std::uint32_t>(found - robot.links.begin());
   const std::vector<std::size_t> chain = chain_to(robot, extension.link);
   if (chain.size() < 2)
@@ -106,8 +110,15 @@ std::variant<Extension, std::string> measured_extension(const Robot& robot,
     }
     lever += longest_step(joint, variables);
   }
-  if (lever < kFarthest) return extension;
-  return fmt::format("found '{}' behind a joint that slides without limits; expected limits", link);
+  if (!(lever < kFarthest))
+    return fmt::format("found '{}' behind a joint that slides without limits; expected limits",
+                       link);
+  if (reach <= kMostReach * lever) return extension;
+  return fmt::format(
+      "found a reach of {:.4g} m; expected at most {:g} times {:.4g} m, as '{}' comes "
+      "no farther from the axis of '{}': is a unit wrong?",
+      reach, kMostReach, lever, link,
+      robot.joints[extension.joint].name.substr(robot.prefix.size()));
 }
 
 std::vector<StopConditions> measured_steps(std::span<const std::vector<StopRow>> of_joint,
@@ -135,7 +146,7 @@ void use_carried_loads(const ObjectList& list, RobotList& robots, Diagnostics& d
     if (stops.load.full > 0.0) {
       const double most = stops.steps.back().load;
       const auto mass = carried(i, robots, list);
-      const double share = mass ? *mass / stops.load.full : most;
+      const double share = mass ? (1.0 - kRounding) * *mass / stops.load.full : most;
       const auto step = std::ranges::lower_bound(stops.steps, share, {}, &StopStep::load);
       if (step == stops.steps.end()) {
         const auto link = std::ranges::find_if(

@@ -15,10 +15,12 @@
 
 namespace clearance {
 
-// Returns how far the link is from the axis of the first joint that turns below it, without the
-// reach. Else returns what was found and expected. `link` is a name without the prefix.
+// Returns how the distance of the link from the axis of the first joint that turns below it is
+// measured. Else returns what was found and expected. `link` is a name without the prefix; `reach`
+// is in m.
 [[nodiscard]] std::variant<Extension, std::string> measured_extension(
-    const Robot& robot, std::span<const JointVariable> variables, const std::string& link);
+    const Robot& robot, std::span<const JointVariable> variables, const std::string& link,
+    double reach);
 
 // Returns the conditions of each step, ascending: of all printed loads and extensions of the
 // category, where they are measured, and of the stated ones where not. There is at least one.

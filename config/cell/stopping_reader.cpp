@@ -70,9 +70,9 @@ class StoppingReader {
 std::optional<double> StoppingReader::read_share(const YamlNode* node, const char* key) {
   if (node == nullptr || node->text == "worst") return std::nullopt;
   if (node->text == "0") return 0.0;
-  const auto percent =
-      read_number(*node, kPercents,
-                  fmt::format("'worst', or the {} in percent of the largest", key), diagnostics_);
+  const auto percent = read_number(
+      *node, kPercents, fmt::format("'worst', the {} in percent of the largest, or a map", key),
+      diagnostics_);
   return percent ? std::optional(0.01 * *percent) : std::nullopt;
 }
 
@@ -83,7 +83,7 @@ void StoppingReader::read_load(const YamlNode& node) {
   if (const YamlNode* full = map.required("full"))
     load.full =
         read_number(*full, kFullLoads, "the largest load in kg", diagnostics_).value_or(1.0);
-  if (const YamlNode* tool = map.optional("tool"))
+  if (const YamlNode* tool = map.required("tool"))
     load.tool =
         read_number(*tool, kMasses, "the mass of the tool in kg", diagnostics_).value_or(0.0);
   map.refuse_unknown_keys();
@@ -99,13 +99,12 @@ void StoppingReader::read_extension(const YamlNode& node) {
   const auto name = read_name(*link, "a link's name", diagnostics_);
   const auto length = quantities_.length(*reach, "the reach that the maker calls 100 %", kPositive);
   if (!name || !length) return;
-  const auto extension = measured_extension(robot_, variables_, *name);
+  const auto extension = measured_extension(robot_, variables_, *name, *length);
   if (const auto* fault = std::get_if<std::string>(&extension)) {
     diagnostics_.add(*link, *fault);
     return;
   }
   robot_.stopping.extension = std::get<Extension>(extension);
-  robot_.stopping.extension.reach = *length;
 }
 
 // The worst of the table counts, unless the cell states a load and an extension or how they follow.

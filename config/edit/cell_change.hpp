@@ -90,8 +90,8 @@ struct JointPosition {
 struct DetachRobot {
   std::string robot;
   std::optional<Pose> world_from_root = {};  // nothing: where it is now, as with Attach
-  // The joints that stand. None: where those of one position are now, which only a running monitor
-  // knows, as with a pose. The joints of an absent robot need not be known.
+  // Where joints stand. All others of one position stand where they are now, which only a running
+  // monitor knows, as with a pose. The joints of an absent robot need not be known.
   std::vector<JointPosition> joints = {};
   bool powered = false;  // its joints are read on
   bool absent = false;   // it is known not to be there

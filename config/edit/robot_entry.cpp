@@ -57,6 +57,10 @@ std::optional<ChangeFault> move_robot(const DetachRobot& change, YamlNode pose, 
                                    "robot",
                                    change.robot)};
   }
+  if (change.powered && !change.joints.empty()) {
+    return ChangeFault{fmt::format("robots[{}].joints", change.robot),
+                       "found joints that stand, and powered: true; expected one of the two"};
+  }
   erase(node, "attached");
   YamlNode base;
   set(base, "pose", std::move(pose));

@@ -22,7 +22,7 @@ RefreshShare refresh_share(const Scene& scene) { return refresh_share(scene, sce
 
 RefreshShare refresh_share(const Scene& scene, std::span<const ObjectPair> pairs) {
   const auto ticks =
-      static_cast<std::uint64_t>(std::clamp(scene.refresh_s * scene.rate_hz, 1.0, 1e15));
+      static_cast<std::uint64_t>(std::clamp(scene.refresh_s / scene.longest_period(), 1.0, 1e15));
   RefreshCost published, others, all;
   for (const ObjectPair& pair : pairs) {
     const std::uint64_t part_pairs =

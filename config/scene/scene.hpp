@@ -103,10 +103,10 @@ struct Scene {
   // Index into `robots`: ticks follow the joint states of this one. kFreeRunning: they follow none.
   static constexpr std::uint32_t kFreeRunning = std::numeric_limits<std::uint32_t>::max();
   std::uint32_t tick_on = kFreeRunning;
-  // From a tick to the next one, at most, s: ticks that follow a robot may be a 64th slower.
-  [[nodiscard]] double longest_period() const noexcept {
-    return (tick_on == kFreeRunning ? 1.0 : 1.0 + 1.0 / 64) / rate_hz;
-  }
+  // From a tick to the next one, s: ticks that follow a robot may be faster or slower by a 64th.
+  [[nodiscard]] double shortest_period() const noexcept { return (1.0 - slew()) / rate_hz; }
+  [[nodiscard]] double longest_period() const noexcept { return (1.0 + slew()) / rate_hz; }
+  [[nodiscard]] double slew() const noexcept { return tick_on == kFreeRunning ? 0.0 : 1.0 / 64; }
   std::uint32_t budget = 2000;  // distance queries a tick, at most: part pairs
   double refresh_s = 10.0;      // every pair is refreshed this often, even if nothing moves, and
                                 // whatever else is urgent: the budget covers it (RefreshShare)

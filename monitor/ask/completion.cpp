@@ -83,7 +83,7 @@ std::vector<MeantContact> contacts_in_force(const Scene& scene, const InputState
     if (contact.end.last_cycle != ContactEnd::kNoCycle) {
       const double cycles =
           static_cast<double>(contact.end.last_cycle) - static_cast<double>(state.cycle);
-      left = std::min(left, cycles / scene.rate_hz);
+      left = std::min(left, cycles * scene.shortest_period());
     }
     contacts.push_back({.first = scene.objects[pair.first].name,
                         .second = scene.objects[pair.second].name,

@@ -155,14 +155,14 @@ SceneCommander::Refusal SceneCommander::take_poses(Work& work) {
   return std::nullopt;
 }
 
-// The joints of a robot that is detached stand where they are now. One that moves would be
-// elsewhere by then, and its links for as long as it stands.
+// The joints of a robot that is detached stand where they are now, unless the change states where.
+// One that moves would be elsewhere by then, and its links for as long as it stands.
 SceneCommander::Refusal SceneCommander::take_positions(Work& work) {
   const Scene& running = changer_.cell().scene;
   for (std::size_t i = 0; i < work.changes.size(); ++i) {
     auto* detach = std::get_if<DetachRobot>(&work.changes[i]);
     const Robot* robot = detach == nullptr ? nullptr : find_robot(running, detach->robot);
-    if (robot == nullptr || detach->powered || !detach->joints.empty()) continue;
+    if (robot == nullptr || detach->powered) continue;
     const auto joints = present_joints(running, loop_, loop_ended_);
     if (!joints) return CommandRefusal{CommandStatus::kEnding, 0, "", "the daemon ends"};
     const auto place = static_cast<std::uint32_t>(robot - running.robots.data());
@@ -170,6 +170,7 @@ SceneCommander::Refusal SceneCommander::take_positions(Work& work) {
       const JointVariable& variable = running.variables[v];
       if (variable.robot != place) continue;
       const std::string name = variable.name.substr(robot->prefix.size());
+      if (std::ranges::count(detach->joints, name, &JointPosition::joint) > 0) continue;
       const std::string why = why_not_standing(variable, (*joints)[v]);
       if (why.empty()) {
         detach->joints.push_back({name, (*joints)[v].position});

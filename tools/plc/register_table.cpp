@@ -18,10 +18,10 @@ constexpr std::array<std::string_view, kPlcValues.size()> kMeanings = {
     "changes with this table: compare it with the number above",
     "writes that were refused since the start",
     "figures above what their type holds, since the start",
-    "1: the zone is not active; 0: it is, or is not known",
+    "1: no zone of these is active; 0: one is, or is not known",
     "lower bound of the distance of all pairs",
     "share of the present speed that is allowed",
-    "distance that is left when the robot stands",
+    "distance that is left: until the robot stands, or above S_p",
 };
 
 // "0.1 percent", or nothing for counts and flags.

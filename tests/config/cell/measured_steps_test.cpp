@@ -49,6 +49,10 @@ TEST_F(MeasuredSteps, OfTheLoadFollowFromTheMassesOfWhatIsAttached) {
   EXPECT_NEAR(most(scene(with(load))), 13, 1e-9) << "the tool alone is 30 %";
   EXPECT_NEAR(most(scene(with(load, part("bolt", "rail", ", mass: 2")))), 13, 1e-9);
   EXPECT_NEAR(most(scene(with(load, part("bolt", "rail", ", mass: 2.5")))), 23, 1e-9);
+  EXPECT_NEAR(
+      most(scene(with("load: {full: 0.3, tool: 0.1}", part("bolt", "rail", ", mass: 0.2")))), 23,
+      1e-9)
+      << "the full load";
   EXPECT_NEAR(most(scene(with(load, part("bolt", "rail", "")))), 23, 1e-9) << "its mass is unknown";
   EXPECT_NEAR(most(scene(with(load, part("box", "post", ", mass: 5")))), 13, 1e-9)
       << "it stands beside the arm";
@@ -99,7 +103,10 @@ TEST_F(MeasuredSteps, OfTheExtensionKnowHowFastEachJointChangesIt) {
   const Extension& extension = arm.robots[0].stopping.extension;
   EXPECT_EQ(extension.joint, joint(arm, "shoulder"));
   EXPECT_EQ(extension.levers[joint(arm, "shoulder")], 0.0) << "it turns about this axis";
-  EXPECT_NEAR(extension.levers[joint(arm, "elbow")], 1.5, 1e-12);
+  const RobotJoint& reach = arm.robots[0].joints[joint(arm, "reach")];
+  EXPECT_NEAR(extension.levers[joint(arm, "elbow")],
+              1.5 + arm.variables[reach.variable].limit_tolerance, 1e-12)
+      << "positions may be a little beyond their limits";
   EXPECT_NEAR(extension.levers[joint(arm, "reach")], 1.0, 1e-12);
   EXPECT_EQ(extension.levers[joint(arm, "grip")], 0.0) << "it is beyond the hand";
   const auto fingers = scene(with("extension: {link: right, reach: 2}")).robots[0].stopping;
@@ -114,9 +121,12 @@ TEST_F(MeasuredSteps, AreRefusedWithWhatIsWrong) {
               mistake_at("cell.yaml:5", "'upper', which no joint moves away from an axis"));
   EXPECT_THAT(errors(with("extension: {link: hand}")), mistake_at("cell.yaml:5", "'reach'"));
   EXPECT_THAT(errors(with("extension: {link: hand, reach: 0}")), mistake_at("cell.yaml:5", "0"));
+  EXPECT_THAT(errors(with("extension: {link: hand, reach: 900}")),
+              mistake_at("cell.yaml:5", "found a reach of 900 m", "a unit wrong"));
   EXPECT_THAT(errors(with("load: {tool: 2}")), mistake_at("cell.yaml:5", "'full'"));
+  EXPECT_THAT(errors(with("load: {full: 2}")), mistake_at("cell.yaml:5", "'tool'"));
   EXPECT_THAT(errors(with("load: {full: 5, tool: -1}")), mistake_at("cell.yaml:5", "-1"));
-  EXPECT_THAT(errors(cell("{reaction_ms: 10, time_ms: 200, load: {full: 5}}")),
+  EXPECT_THAT(errors(cell("{reaction_ms: 10, time_ms: 200, load: {full: 5, tool: 1}}")),
               mistake_at("cell.yaml:5", "found 'load' without 'table'"));
   test::write_text(folder_ / "stops.csv",
                    "joint,extension_percent,speed_percent,time_ms,angle_deg\n1,66,100,400,20\n");

@@ -94,6 +94,10 @@ TEST_F(ToolCommands, AreRefusedWhileAJointThatIsToStandMoves) {
 TEST_F(ToolCommands, DetachAToolWithPowerWhoseJointsAreReadOn) {
   begin();
   attach();
+  const CommandResult both = expect_refused(
+      {DetachRobot{.robot = "gripper", .joints = {{"finger", 0.01}}, .powered = true}},
+      CommandStatus::kRefused);
+  EXPECT_EQ(both.path, "robots[gripper].joints");
   ASSERT_TRUE(execute({DetachRobot{.robot = "gripper", .powered = true}}).done());
   EXPECT_FALSE(variable("g_finger").is_held());
 }
