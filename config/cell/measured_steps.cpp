@@ -53,7 +53,7 @@ std::vector<std::size_t> chain_to(const Robot& robot, std::size_t link) {
   return chain;
 }
 
-// Of what stands on a robot, kg. A tool that is absent has none.
+// Returns the mass of what stands on a robot, kg. A tool that is absent has none.
 double mass_of(const Robot& robot, const ObjectList& list) {
   if (robot.is_attached) return list.objects[robot.links.front().object].mass;
   const bool is_absent = std::ranges::any_of(robot.links, [&](const RobotLink& link) {

@@ -1,5 +1,5 @@
-// What chooses among the steps of a stopping table: the extension of a posture, and the masses that
-// an arm carries.
+// The extension of a posture and the masses that an arm carries choose among the steps of a
+// stopping table.
 #pragma once
 
 #include <span>

@@ -1,5 +1,5 @@
-// What a cell says about programmable logic controllers (`plc:`), for clearance-plc: which figure
-// stands in which register, and where the program serves them.
+// The section `plc` of a cell, for clearance-plc: it says which figure stands in which register,
+// and where the program serves them to programmable logic controllers.
 #pragma once
 
 #include <array>
@@ -13,7 +13,7 @@
 
 namespace clearance {
 
-// Of every value, a smaller one is the safer one, and 0 of all but lengths is the safe end.
+// A smaller value is always the safer one. 0 is the safe end of all but lengths.
 enum class PlcValue : std::uint8_t {
   kHeartbeat,
   kGood,
@@ -48,7 +48,7 @@ inline constexpr std::array<PlcValueKey, 10> kPlcValues = {{
     {"stop_margin", PlcQuantity::kLength, true, true},
 }};
 
-// How a value is written into one register of 16 bits, or two.
+// The types in which a value stands in one register of 16 bits, or in two.
 struct PlcTypeKey {
   std::string_view key;
   std::uint8_t registers;
@@ -92,7 +92,7 @@ struct PlcRow {
   [[nodiscard]] bool has_unit() const {
     return key().quantity == PlcQuantity::kLength || key().quantity == PlcQuantity::kShare;
   }
-  // How many counts make one metre, or the full speed.
+  // Returns the number of counts for one metre, or for the full speed.
   [[nodiscard]] double per_si() const { return has_unit() ? kPlcUnits[unit].per_si / scale : 1.0; }
 };
 

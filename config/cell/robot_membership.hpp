@@ -14,8 +14,8 @@ namespace clearance {
 
 struct Membership {
   std::vector<std::string> groups;  // of its links; its name first
-  // Of an attached robot: index into ObjectList::objects of its carrier. Nothing: a link without
-  // shapes carries it.
+  // An attached robot has the index of its carrier into ObjectList::objects. Nothing: a link
+  // without shapes carries it.
   std::optional<std::uint32_t> carrier;
   bool absent = false;
 };

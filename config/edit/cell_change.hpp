@@ -79,7 +79,7 @@ struct AttachRobot {
   bool far = false;
 };
 
-// Where a joint of one position stands, rad or m. The name is that of the URDF.
+// A joint of one position stands here, rad or m. The name is that of the URDF.
 struct JointPosition {
   std::string joint;
   double position = 0.0;

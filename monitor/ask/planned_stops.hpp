@@ -85,7 +85,7 @@ class PlannedStops {
   // How far the motion takes a joint back and forth within a time, s of the motion, from anywhere
   // in a piece.
   [[nodiscard]] Box path_within(std::size_t piece, std::size_t joint, double time) const noexcept;
-  // The piece that follows the last one of which a stop, told in `piece`, may begin within `time`.
+  // Returns the piece after all those in which a stop, told in `piece`, may begin within `time`.
   [[nodiscard]] std::size_t past_window(std::size_t piece, double time) const noexcept;
   [[nodiscard]] double time_past_the_end() const noexcept;
   void note_earlier() noexcept;

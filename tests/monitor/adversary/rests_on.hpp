@@ -1,4 +1,4 @@
-// What is told of which body: the faults of a channel show in these.
+// The bodies in which the faults of a channel show.
 #pragma once
 
 #include <cstddef>
