@@ -50,12 +50,13 @@ const StoppingJoints::Joint* StoppingJoints::find(std::uint32_t variable) const 
 void StoppingJoints::read(const Inputs& inputs) noexcept {
   is_usable_ = !inputs.robots.is_denied(robot_);
   is_assumed_ = may_turn_ = false;
+  is_stopping_ = true;
   age_ = 0.0;
   for (Joint& joint : joints_) read(inputs, joint);
   for (Joint& joint : joints_) {
-    const bool gains = joint.acceleration < kInfinity && !joint.any_direction;
-    joint.gained = gains ? rounded_up(joint.acceleration * reaction()) : 0.0;
-    may_turn_ = may_turn_ || joint.gained > 0.0 || joint.any_direction;
+    joint.may_curve = joint.acceleration < kInfinity && !joint.any_direction;
+    joint.gained = joint.may_curve ? rounded_up(joint.acceleration * reaction()) : 0.0;
+    may_turn_ = may_turn_ || joint.may_curve || joint.any_direction;
   }
   if (is_usable_ && !stops_.steps.empty()) choose_step(inputs);
 }
@@ -100,11 +101,14 @@ void StoppingJoints::read(const Inputs& inputs, Joint& joint) noexcept {
   joint.age = is_known ? rounded_up(seconds(state.input.age_ns(inputs.time.now_ns))) : 0.0;
   age_ = std::max(age_, joint.age);
   is_assumed_ = is_assumed_ || joint.any_direction;
+  is_stopping_ = is_stopping_ && state.is_stopping;
   is_usable_ = is_usable_ && is_known && joint.speed < kInfinity;
 }
 
-// From the oldest position in use until the brakes act, at the latest, s.
+// From the oldest position in use until the brakes act, at the latest, s. Those of a stop in
+// progress act already.
 double StoppingJoints::reaction() const noexcept {
+  if (is_stopping_) return age_;
   return rounded_up(stops_.reaction + period_ + age_);
 }
 
@@ -150,7 +154,7 @@ double StoppingJoints::covered(const Joint& joint) const noexcept {
   if (stops_.keeps_path) {
     braking = faster * at_most_in_proportion(1.0);
     const double longest = longest_time(1.0);
-    if (joint.gained > 0.0) braking += 0.5 * joint.acceleration * longest * longest;
+    if (joint.may_curve) braking += 0.5 * joint.acceleration * longest * longest;
   }
   return rounded_up(faster * reaction() + braking);
 }
@@ -167,7 +171,7 @@ double StoppingJoints::standstill(std::uint32_t variable) const noexcept {
 void StoppingJoints::state(StatedJoint& out, std::uint32_t variable) const noexcept {
   const Joint& joint = *find(variable);
   const double covered = this->covered(joint);
-  const bool either = joint.any_direction || joint.gained > 0.0;
+  const bool either = joint.any_direction || joint.may_curve;
   out.position = joint.position;
   if (!either) out.position += std::copysign(0.5 * covered, joint.velocity);
   const double beyond = joint.hold_within_limits(out.position);
@@ -195,7 +199,7 @@ void StoppingJoints::write_motion(double scaling, JointTrajectory& motion) const
     } else if (stops_.keeps_path) {
       at(1) = joint.position + side * (before + speed * on_line);
       deviation += scaling * joint.gained * at_most + speed * (at_most - on_line);
-      if (joint.gained > 0.0) deviation += 0.5 * joint.acceleration * longest * longest;
+      if (joint.may_curve) deviation += 0.5 * joint.acceleration * longest * longest;
     } else {
       const double back = rounded_up(scaling * std::max(0.0, joint.gained - joint.speed));
       const double on = joint.stop->distance(faster), reverse = joint.stop->distance(back);

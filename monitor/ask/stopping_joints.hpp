@@ -58,8 +58,9 @@ class StoppingJoints {
     double full_speed = kInfinity;
     // In this tick: the position in use, and the velocity that counts.
     double position = 0.0, velocity = 0.0, speed = 0.0;
-    double gained = 0.0;  // its velocity may change by this until the brakes act
-    double age = 0.0;     // s
+    bool may_curve = false;  // its acceleration is stated: it may leave the line
+    double gained = 0.0;     // its velocity may change by this until the brakes act
+    double age = 0.0;        // s
     bool any_direction = false;
 
     // Returns by how much the position was beyond the limits.
@@ -83,7 +84,8 @@ class StoppingJoints {
   std::vector<Joint> joints_;
   double age_ = 0.0;  // s: of the oldest position in use
   bool is_usable_ = false, is_assumed_ = false;
-  bool may_turn_ = false;  // the velocity of a joint may be another one when the brakes act
+  bool is_stopping_ = false;  // all of its brakes act since the oldest position in use
+  bool may_turn_ = false;     // the velocity of a joint may be another one when the brakes act
 };
 
 }  // namespace clearance

@@ -92,9 +92,18 @@ struct PositionCandidate {
                                             : 0.0;
     }
     state.sent_speed = speed_of(sample);
+    note_braking();
     state.position = sample.position;
     state.outside_limits = false;
     state.plausibility.use(sample.position, stamp_ns, !state.input.has_value, limits);
+  }
+
+  // A joint that becomes faster is not believed to brake, until its sender begins anew.
+  void note_braking() const noexcept {
+    const double speed = std::max(std::abs(state.velocity), state.sent_speed);
+    state.slowest_braking = sample.stopping ? std::min(state.slowest_braking, speed) : kInfinity;
+    state.is_stopping =
+        sample.stopping && state.velocity_known && speed <= kNoisy * state.slowest_braking;
   }
 
   [[nodiscard]] std::int64_t agree_for_ns() const noexcept {

@@ -23,7 +23,10 @@ struct TrackedVariable {
   // Bound of the motion since its stamp, rad or m. It is 0 unless late, and infinite if neither a
   // speed nor limits bound the motion.
   double may_have_moved = 0.0;
-  double sent_speed = 0.0;             // that was sent with the position; 0: none was sent
+  double sent_speed = 0.0;  // that was sent with the position; 0: none was sent
+  // The least speed since its brakes have been stated to act, rad/s or m/s; infinity: they are not.
+  double slowest_braking = kInfinity;
+  bool is_stopping = false;            // its brakes act, and its speed has not risen since
   bool velocities_contradict = false;  // the sent velocities say less than the positions show
   bool outside_limits = false;         // a position was refused for that since one was taken
   Repetition repetition;               // of all positions of the joint; at its first variable

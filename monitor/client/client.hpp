@@ -287,10 +287,11 @@ class JointWriter {
   JointWriter& operator=(const JointWriter&) = delete;
 
   // Sends positions (rad or m) in the order of the names, with velocities (per second) or none,
-  // that held at `stamp_ns`. Returns false when DDS did not take them. Throws std::invalid_argument
-  // when their number differs from that of the names.
+  // that held at `stamp_ns`. `stopping`: the brakes act, and do so until these joints stand.
+  // Returns false when DDS did not take them. Throws std::invalid_argument when their number
+  // differs from that of the names.
   bool write(std::span<const double> positions, std::span<const double> velocities = {},
-             std::int64_t stamp_ns = now_ns());
+             std::int64_t stamp_ns = now_ns(), bool stopping = false);
   // True when there is a reader.
   [[nodiscard]] bool is_heard() const;
 

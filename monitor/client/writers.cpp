@@ -48,7 +48,7 @@ JointWriter::JointWriter(Connection& connection, std::string_view source,
 JointWriter::~JointWriter() { dds_delete(writer_); }
 
 bool JointWriter::write(std::span<const double> positions, std::span<const double> velocities,
-                        std::int64_t stamp_ns) {
+                        std::int64_t stamp_ns, bool stopping) {
   const std::size_t names = message_->names._length;
   if (positions.size() != names || (!velocities.empty() && velocities.size() != names)) {
     throw std::invalid_argument(
@@ -57,6 +57,7 @@ bool JointWriter::write(std::span<const double> positions, std::span<const doubl
   }
   ++message_->sequence_number;
   message_->stamp_ns = stamp_ns;
+  message_->stopping = stopping;
   std::ranges::copy(positions, message_->positions._buffer);
   std::ranges::copy(velocities, message_->velocities._buffer);
   message_->positions._length = static_cast<std::uint32_t>(positions.size());

@@ -19,6 +19,7 @@ struct JointSample {
   double velocity = 0.0;       // of `position`, per second
   bool has_velocity = false;
   std::uint32_t namesake = kNoSource;  // number of the sender whose name this one shares, if any
+  bool stopping = false;               // its brakes act, and do so until it stands
 };
 
 // The largest admissible position and velocity of a joint. The sines and cosines of angles up to

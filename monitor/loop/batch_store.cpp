@@ -39,6 +39,7 @@ std::uint64_t content_of(const PoseBatch& batch) noexcept {
     sum.add(sample.position);
     sum.add(sample.has_velocity);
     if (sample.has_velocity) sum.add(sample.velocity);
+    sum.add(sample.stopping);
   }
   return sum.value();
 }

@@ -267,6 +267,7 @@ void from_wire(const clearance_msg_JointStates& states, const JointNames& names,
     JointSample& sample = out.joints.emplace_back();
     sample.variable = variable;
     sample.stamp_ns = states.stamp_ns;
+    sample.stopping = states.stopping;
     sample.position = i < states.positions._length ? states.positions._buffer[i]
                                                    : std::numeric_limits<double>::quiet_NaN();
     sample.has_velocity = has_velocities;
@@ -295,7 +296,7 @@ void from_wire(const sensor_msgs_msg_dds__JointState_& states, const JointNames&
   }
 }
 
-// All samples of a batch have one stamp, and all or none have a velocity.
+// All samples of a batch have one stamp. All or none have a velocity, and all or none are stopping.
 Sample<clearance_msg_JointStates> make_joint_states(const PoseBatch& batch,
                                                     std::span<const std::string> names) {
   Sample<clearance_msg_JointStates> states;
@@ -303,6 +304,7 @@ Sample<clearance_msg_JointStates> make_joint_states(const PoseBatch& batch,
   states->sequence_number = batch.sequence_number;
   if (batch.joints.empty()) return states;
   states->stamp_ns = batch.joints.front().stamp_ns;
+  states->stopping = batch.joints.front().stopping;
   const bool has_velocities = batch.joints.front().has_velocity;
   reserve_sequence(states->names, batch.joints.size());
   reserve_sequence(states->positions, batch.joints.size());

@@ -78,7 +78,7 @@ class Walker {
 };
 
 struct JudgedRuns {
-  std::size_t instants = 0, nearer = 0, moving = 0, slowed = 0, stops = 0;
+  std::size_t instants = 0, nearer = 0, moving = 0, slowed = 0, stops = 0, stated = 0;
   double least_left = kInfinity;  // m: of distances less their margins
   std::string worst;
 };
@@ -111,6 +111,7 @@ class SimulatedCell {
         judged.slowed += !stood && stops[r].scaling < 1.0 && stops[r].scaling > 0.0;
         judged.stops += !stood && robots_[r].stands();
         judged.moving += !robots_[r].stands();
+        judged.stated += !robots_[r].stands() && robots_[r].said().stopping;
         if (robots_[r].is_at_its_end()) return;
       }
       walker_.step();
@@ -155,6 +156,7 @@ class SimulatedCell {
         samples.push_back(test::joint(robot.variable(j), robot.said().positions[j], stamp()));
         samples.back().has_velocity = true;
         samples.back().velocity = robot.said().velocities[j];
+        samples.back().stopping = robot.said().stopping;
       }
     }
     return samples;
@@ -215,16 +217,18 @@ TEST(ObeyedStops, KeepEachMarginUntilTheRobotStands) {
     all.moving += judged.moving;
     all.slowed += judged.slowed;
     all.stops += judged.stops;
+    all.stated += judged.stated;
     all.least_left = std::min(all.least_left, judged.least_left);
   }
   EXPECT_GT(all.instants, 10'000u);
   EXPECT_GT(all.moving, 5'000u);
   EXPECT_GT(all.slowed, 100u);
   EXPECT_GT(all.stops, 3u);
+  EXPECT_GT(all.stated, 30u);
   if (std::getenv("CLEARANCE_STOPS_SHOW") != nullptr)
     std::cout << all.instants << " judged, " << all.moving << " ticks in motion, " << all.slowed
-              << " slowed, " << all.stops << " stops, " << all.least_left
-              << " m above the margin\n";
+              << " slowed, " << all.stops << " stops, " << all.stated << " ticks in stated stops, "
+              << all.least_left << " m above the margin\n";
 }
 
 }  // namespace

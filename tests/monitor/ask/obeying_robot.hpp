@@ -27,6 +27,7 @@ class ObeyingRobot {
     const Scene& scene = arms.scene;
     const RobotStops& stops = robot_.stopping;
     reaction_ = static_cast<std::size_t>(std::lround(stops.reaction / kStep)) + late;
+    states_stops_ = random_.chance(0.5);
     for (std::size_t j = 0; j < robot_.joints.size(); ++j) {
       if (!moves(scene, robot_, j)) continue;
       Joint joint{.of = &scene.variables[robot_.joints[j].variable],
@@ -49,7 +50,7 @@ class ObeyingRobot {
       joint.velocity = rests ? 0.0 : 0.8 * joint.of->max_speed * random_.uniform(-1.0, 1.0);
     }
     commands_.assign(reaction_, Command{.cap = kInfinity, .reported = 0});
-    braking_ = false;
+    braking_ = stops_ = false;
     past_.clear();
     for (std::size_t k = age_; k > 0; --k) note(-kStep * static_cast<double>(k));
     note(0.0);
@@ -58,6 +59,7 @@ class ObeyingRobot {
   struct Said {
     std::vector<double> positions, velocities;  // by joint
     double scaling = 0.0;                       // of its own profile
+    bool stopping = false;                      // stated: its brakes act until it stands
   };
   // What the robot says at this tick: `age` ticks old.
   [[nodiscard]] const Said& said() const { return past_.front(); }
@@ -82,7 +84,9 @@ class ObeyingRobot {
     commands_.pop_front();
     ++tick_;
     if (robot_.stopping.keeps_path) {
-      follow(command.cap);
+      // A stop that it states goes on until it stands, whatever the commands are.
+      stops_ = states_stops_ && !stands() && (stops_ || command.cap == 0.0);
+      follow(stops_ ? 0.0 : command.cap);
     } else {
       leave_path(command);
     }
@@ -123,7 +127,10 @@ class ObeyingRobot {
   static double most(const Joint& joint) { return 0.8 * std::min(joint.of->upper, 2.5); }
 
   void note(double before) {
-    Said said{.positions = {}, .velocities = {}, .scaling = state_.scaling};
+    Said said{.positions = {},
+              .velocities = {},
+              .scaling = state_.scaling,
+              .stopping = states_stops_ && (robot_.stopping.keeps_path ? stops_ : braking_)};
     for (const Joint& joint : joints_) {
       said.positions.push_back(joint.position + before * joint.velocity);
       said.velocities.push_back(state_.scaling * joint.velocity);
@@ -247,6 +254,7 @@ class ObeyingRobot {
     double scaling = 1.0;  // of its own profile
   } state_;
   bool accelerates_ = false, braking_ = false;
+  bool states_stops_ = false, stops_ = false;  // it states that a stop is in progress
   Braking braking_law_;
   double elapsed_ = 0.0;  // s: since the joints brake by themselves
   std::deque<Command> commands_;

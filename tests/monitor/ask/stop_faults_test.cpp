@@ -2,6 +2,7 @@
 // of monitor/FAULTS.md about stops. The cell and the joints are those of stopping_cell.hpp.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <optional>
@@ -139,6 +140,53 @@ TEST_F(StopFaults, WhatIsBesideItAndWasNeverHeardMeansThatItHasToStop) {
   EXPECT_EQ(stop.validity, SeparationValidity::kUnknown);
   EXPECT_EQ(stop.scaling, 0.0);
   EXPECT_EQ(tick(0.0, true).scaling, 1.0) << "the person is there now";
+}
+
+// The shoulder turns towards a wall until a report admits less than its speed. Its brakes act 10 ms
+// before the stated reaction is over.
+class StopInProgress : public StoppingCells {
+ protected:
+  // The least scaling of the reports while the brakes act.
+  double least_scaling(bool stated) {
+    const Scene scene = this->scene(cell(
+        "{reaction_ms: 50, joints: {shoulder: {deceleration: 229.183}, elbow: {deceleration: 400}, "
+        "reach: {deceleration: 1}, grip: {deceleration: 1}}}",  // deg/s2 and m/s2
+        "  - {name: wall, fixed: true, sphere: {radius: 0.3}, pose: {xyz: [1.2, 0, 0]}}\n",
+        "  - {between: [arm, wall]}\nzones:\n  - {name: stops, between: [arm, wall], "
+        "stops: {margin: 0.05}}\n"));
+    Monitor monitor(scene);
+    std::int64_t now = kStart;
+    double angle = -2.0;
+    const auto tick = [&](double speed, bool stopping) {
+      now += kTick;
+      angle += 1e-3 * speed;
+      std::vector<JointSample> joints;
+      for (std::uint32_t v = 0; v < scene.variables.size(); ++v) {
+        const bool is_shoulder = scene.variables[v].name == "shoulder";
+        JointSample sample = test::joint(v, is_shoulder ? angle : 0.0, now);
+        sample.has_velocity = true;
+        sample.velocity = is_shoulder ? speed : 0.0;
+        sample.stopping = stopping;
+        joints.push_back(sample);
+      }
+      return monitor.tick({}, joints, now).stops.at(0).scaling;
+    };
+    while (tick(kSpeed, false) == 1.0 && angle < 2.0) {
+    }
+    EXPECT_LT(angle, 0.0) << "nothing was in its path";
+    for (int ms = 0; ms < 40; ++ms) static_cast<void>(tick(kSpeed, false));
+    double least = 1.0;
+    for (double speed = kSpeed; speed > 0.0; speed -= 1e-3 * kDeceleration)
+      least = std::min(least, tick(speed, stated));
+    return least;
+  }
+
+  static constexpr double kDeceleration = 4.0;  // rad/s2
+};
+
+TEST_F(StopInProgress, IsNotToldToStopAgainIfItIsStated) {
+  EXPECT_EQ(least_scaling(true), 1.0);
+  EXPECT_LT(least_scaling(false), 1.0) << "each report counts another reaction";
 }
 
 // A late pose of a person is no end of it: the person has gone on by their largest speed.

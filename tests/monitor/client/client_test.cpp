@@ -263,7 +263,7 @@ TEST(Client, JointsAndPosesArriveAsTheDaemonWantsThem) {
   client::JointWriter arm(connection, "arm", {"shoulder", "elbow"});
   client::PoseWriter tracker(connection, "tracker");
   ASSERT_TRUE(eventually([&] { return arm.is_heard() && tracker.is_heard(); }));
-  EXPECT_TRUE(arm.write({{0.1, 0.2}}, {{1.0, 2.0}}, 77));
+  EXPECT_TRUE(arm.write({{0.1, 0.2}}, {{1.0, 2.0}}, 77, true));
   EXPECT_TRUE(arm.write({{0.3, 0.4}}));
   Sample<clearance_msg_JointStates> states;
   ASSERT_TRUE(eventually([&] { return take(joints, states); }));
@@ -274,9 +274,11 @@ TEST(Client, JointsAndPosesArriveAsTheDaemonWantsThem) {
   EXPECT_STREQ(states->names._buffer[1], "elbow");
   EXPECT_EQ(states->positions._buffer[1], 0.2);
   EXPECT_EQ(states->velocities._buffer[1], 2.0);
+  EXPECT_TRUE(states->stopping);
   ASSERT_TRUE(eventually([&] { return take(joints, states); }));
   EXPECT_EQ(states->sequence_number, 2u);
   EXPECT_EQ(states->velocities._length, 0u);
+  EXPECT_FALSE(states->stopping);
   EXPECT_GT(states->stamp_ns, 1'000'000'000'000'000'000);
 
   std::vector<clearance_msg_ObjectPose> sent(2);

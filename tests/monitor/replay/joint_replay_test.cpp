@@ -36,7 +36,7 @@ PoseBatch through_the_wire(const PoseBatch& batch, const Scene& scene) {
 TEST(JointStates, ComeThroughTheWireAsTheyWere) {
   const Scene scene = scara_cell();
   auto all = joints(0.1, -0.2, 0.3, kStart);
-  for (JointSample& sample : all) sample.has_velocity = true;
+  for (JointSample& sample : all) sample.has_velocity = sample.stopping = true;
   all[1].velocity = 0.7;
   const PoseBatch out = through_the_wire(batch_of("arm", 7, {all.begin(), all.end()}), scene);
   EXPECT_EQ(out.source.view(), "arm");
@@ -47,6 +47,7 @@ TEST(JointStates, ComeThroughTheWireAsTheyWere) {
     EXPECT_EQ(out.joints[i].position, all[i].position);
     EXPECT_EQ(out.joints[i].stamp_ns, kStart);
     EXPECT_TRUE(out.joints[i].has_velocity);
+    EXPECT_TRUE(out.joints[i].stopping);
   }
   EXPECT_EQ(out.joints[1].velocity, 0.7);
 }
@@ -82,6 +83,7 @@ TEST(JointStates, NamesOfNoUseAreLeftOutAndUnknownOnesAreOfNoVariable) {
   EXPECT_EQ(out.joints[0].variable, 2u);
   EXPECT_EQ(out.joints[0].position, 0.25);
   EXPECT_FALSE(out.joints[0].has_velocity);
+  EXPECT_FALSE(out.joints[0].stopping);
   EXPECT_EQ(out.joints[1].variable, 0u);
   EXPECT_TRUE(std::isnan(out.joints[1].position));
   EXPECT_EQ(out.joints[2].variable, JointNames::kUnknown);

@@ -459,6 +459,7 @@ class JointWriter(_Live):
         positions: ArrayLike,
         velocities: Optional[ArrayLike] = ...,
         stamp_ns: Optional[int] = ...,
+        stopping: bool = ...,
     ) -> bool: ...
     def wait_heard(self, timeout: Optional[float] = ...) -> bool: ...
     @property

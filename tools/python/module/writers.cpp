@@ -50,16 +50,18 @@ class JointWriter : public Live<JointParts> {
       : Live("JointWriter", connection_of(connection), source, std::move(names)) {}
 
   bool write(const py::object& positions, const py::object& velocities,
-             const std::optional<std::int64_t>& stamp_ns) {
+             const std::optional<std::int64_t>& stamp_ns, bool stopping) {
     const Use parts = use();
     const auto count = static_cast<py::ssize_t>(parts->names.size());
     const auto size = static_cast<std::size_t>(count);
     const Doubles at = doubles_of(positions, "positions", {count});
     expect_finite(at, "positions");
-    if (velocities.is_none()) return parts->writer.write({at.data(), size}, {}, stamp_of(stamp_ns));
+    if (velocities.is_none())
+      return parts->writer.write({at.data(), size}, {}, stamp_of(stamp_ns), stopping);
     const Doubles speeds = doubles_of(velocities, "velocities", {count});
     expect_finite(speeds, "velocities");
-    return parts->writer.write({at.data(), size}, {speeds.data(), size}, stamp_of(stamp_ns));
+    return parts->writer.write({at.data(), size}, {speeds.data(), size}, stamp_of(stamp_ns),
+                               stopping);
   }
 };
 
@@ -140,9 +142,9 @@ void add_writers(py::module_& module) {
 that the cell gives. Raises ValueError and DdsError.)")
       .def(
           "write", &JointWriter::write, py::arg("positions"), py::arg("velocities") = py::none(),
-          py::arg("stamp_ns") = py::none(),
+          py::arg("stamp_ns") = py::none(), py::arg("stopping") = false,
           R"(positions: (names,), rad or m. velocities: (names,), per second. stamp_ns: when they held;
-None: now. Returns False if DDS did not take them. Raises ValueError for another shape or a number that
+None: now. stopping: the brakes act, and do so until these joints stand. Returns False if DDS did not take them. Raises ValueError for another shape or a number that
 is not finite.)")
       .def(
           "wait_heard",
