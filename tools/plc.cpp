@@ -68,18 +68,24 @@ void add_options(CommandLine& line, Arguments& arguments) {
   line.add({log_level_option(arguments.log_level)});
 }
 
-// Logs what becomes of the figures, at most once per second.
+// Logs what becomes of the figures, at most once per second. Each fail-safe phase is told, however
+// short it was.
 class FigureLog {
  public:
   void note(plc::Cause cause, std::int64_t now_ns) {
     constexpr std::int64_t kEveryNs = 1'000'000'000;
-    if (cause == told_ || (told_ && now_ns - told_ns_ < kEveryNs)) return;
-    told_ = cause;
+    if (cause != plc::Cause::kNone && cause != last_) due_ = cause;
+    last_ = cause;
+    const plc::Cause next = due_.value_or(cause);
+    const bool is_news = due_ || next != told_;
+    if (!is_news || (told_ && now_ns - told_ns_ < kEveryNs)) return;
+    due_.reset();
+    told_ = next;
     told_ns_ = now_ns;
-    if (cause == plc::Cause::kNone)
+    if (next == plc::Cause::kNone)
       log_line(lines::kPlcGood);
     else
-      log_line(lines::kPlcFailSafe, plc::kCauses[static_cast<std::size_t>(cause)]);
+      log_line(lines::kPlcFailSafe, plc::kCauses[static_cast<std::size_t>(next)]);
   }
   void note_misfits(const PlcSettings& settings, plc::RegisterTable& table) {
     for (const std::size_t row : table.new_misfits()) {
@@ -90,7 +96,8 @@ class FigureLog {
   }
 
  private:
-  std::optional<plc::Cause> told_;
+  std::optional<plc::Cause> last_, told_;
+  std::optional<plc::Cause> due_;  // of a phase that was not told yet
   std::int64_t told_ns_ = 0;
   std::vector<std::size_t> misfits_;  // rows that were told
 };

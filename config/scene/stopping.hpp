@@ -50,7 +50,7 @@ struct StopStep {
   std::vector<JointStop> joints;  // as RobotStops::joints
 };
 
-// How far an arm is extended: the distance of a link's origin from the axis of a joint, m.
+// The extension of an arm: the distance of a link's origin from the axis of a joint, m.
 struct Extension {
   std::uint32_t joint = 0, link = 0;  // indices into the robot's; the joint turns, below the link
   double reach = 0.0;                 // m: the maker's 100 %; 0: the worst extension counts

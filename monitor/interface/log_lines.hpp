@@ -221,18 +221,18 @@ inline constexpr LogLine<Text, Text, Text, Text> kTwoJointSources{
 inline constexpr LogLine<Text, Text, Text, Text> kJointsSilent{
     "joints-silent", kWarn, "no usable position of {} of {} has come ({}): {}"};
 
-// ---- What grew in the last second
+// ---- What grew since the last line about it
 
 inline constexpr LogLine<Text, Count> kBatchesLost{
-    "batches-lost", kWarn, "{} lost in the last second, {} since the start"};
+    "batches-lost", kWarn, "{} lost since the last such line, {} since the start"};
 inline constexpr LogLine<Text, Count> kUndecodable{
-    "undecodable", kWarn, "{} in the last second could not be decoded, {} since the start"};
+    "undecodable", kWarn, "{} could not be decoded since the last such line, {} since the start"};
 inline constexpr LogLine<Text, Count> kOtherReports{
-    "other-reports", kWarn, "{} of other daemons in the last second, {} since the start"};
+    "other-reports", kWarn, "{} of other daemons since the last such line, {} since the start"};
 inline constexpr LogLine<Text, Count> kOverruns{"overruns", kWarn,
-                                                "{} in the last second, {} since the start"};
+                                                "{} since the last such line, {} since the start"};
 inline constexpr LogLine<Text, Count> kReportsDropped{
-    "reports-dropped", kWarn, "{} dropped in the last second, {} since the start"};
+    "reports-dropped", kWarn, "{} dropped since the last such line, {} since the start"};
 inline constexpr LogLine<double> kClockStepped{
     "clock-stepped", kWarn,
     "this machine's clock was stepped by {:+.3f} s. Ages follow a clock that was not stepped. "

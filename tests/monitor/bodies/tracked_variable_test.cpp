@@ -76,37 +76,6 @@ TEST_F(Variable, VelocityIsWhatIsSentElseWhatTwoPositionsSay) {
   EXPECT_FALSE(state_.velocity_known);
 }
 
-// A sender that forgets to take the statement back must not hide the reaction of the next stop.
-TEST_F(Variable, ItIsStoppingWhileThatIsStatedAndItDoesNotBecomeFaster) {
-  std::int64_t ms = 0;
-  double position = 0.0;
-  const auto is_stopping = [&](bool stated, double velocity) {
-    JointSample sample = at(++ms * kVariableMs, position += 1e-3 * velocity);
-    sample.stopping = stated;
-    sample.has_velocity = true;
-    sample.velocity = velocity;
-    EXPECT_EQ(take(sample), std::nullopt);
-    return state_.is_stopping;
-  };
-  EXPECT_FALSE(is_stopping(false, 1.0));
-  EXPECT_TRUE(is_stopping(true, 1.0));
-  EXPECT_TRUE(is_stopping(true, 0.5));
-  EXPECT_TRUE(is_stopping(true, 0.6)) << "velocities are noisy";
-  EXPECT_TRUE(is_stopping(true, -0.1));
-  EXPECT_TRUE(is_stopping(true, 0.0));
-  EXPECT_FALSE(is_stopping(true, 0.2)) << "it moves again";
-  EXPECT_FALSE(is_stopping(true, 0.2));
-  EXPECT_FALSE(is_stopping(false, 0.2));
-  EXPECT_TRUE(is_stopping(true, 0.2)) << "this is another stop";
-}
-
-TEST_F(Variable, ItIsNotStoppingWhileItsVelocityIsNotKnown) {
-  JointSample sample = at(0, 0.1);
-  sample.stopping = true;
-  EXPECT_EQ(take(sample), std::nullopt);
-  EXPECT_FALSE(state_.is_stopping);
-}
-
 TEST_F(Variable, LateItMayHaveGoneAsFastAsItGoesButNotBeyondItsLimits) {
   EXPECT_EQ(take(at(0, 0.5)), std::nullopt);
   advance(joint_, 20 * kVariableMs, state_);

@@ -26,8 +26,8 @@ class RefusedReplay : public std::runtime_error {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 
-// Writes ticks as records of one layout. Pairs, zones and robots that state how they stop are those
-// of the cell that the caller gave, by name, also after the recording has changed its cell.
+// Writes ticks as records of one layout. It has the pairs, zones and stopping robots of the cell
+// that the caller gave. They go by name, also after the recording has changed its cell.
 class TickRecords {
  public:
   explicit TickRecords(const Scene& scene) : scene_(scene) {

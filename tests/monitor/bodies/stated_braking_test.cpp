@@ -1,0 +1,61 @@
+// Joints whose sender says that they brake (JointStates.stopping), and whether that is believed.
+#include <gtest/gtest.h>
+
+#include <cstdint>
+
+#include "monitor/bodies/tracked_variable.hpp"
+
+namespace clearance {
+namespace {
+
+// A joint that sends its position and its velocity once per millisecond.
+class StatedBraking : public testing::Test {
+ protected:
+  StatedBraking() {
+    joint_.max_speed = 2.0;
+    joint_.age_limit_ns = 20 * kStepNs;
+  }
+
+  bool is_stopping(bool stated, double velocity, bool sends_velocity = true) {
+    JointSample sample;
+    sample.stamp_ns = now_ns_ += kStepNs;
+    sample.position = position_ += 1e-3 * velocity;
+    sample.velocity = velocity;
+    sample.has_velocity = sends_velocity;
+    sample.stopping = stated;
+    EXPECT_EQ(take(joint_, sample, now_ns_, {.now_ns = now_ns_, .future_ns = kStepNs}, state_,
+                   state_.repetition),
+              std::nullopt);
+    return state_.is_stopping;
+  }
+
+  static constexpr std::int64_t kStepNs = 1'000'000;
+
+ private:
+  JointVariable joint_;
+  TrackedVariable state_;
+  std::int64_t now_ns_ = 0;
+  double position_ = 0.0;
+};
+
+// A sender that forgets to take the statement back must not hide the reaction of the next stop.
+TEST_F(StatedBraking, EndsWhenTheJointBecomesFaster) {
+  EXPECT_FALSE(is_stopping(false, 1.0));
+  EXPECT_TRUE(is_stopping(true, 1.0));
+  EXPECT_TRUE(is_stopping(true, 0.5));
+  EXPECT_TRUE(is_stopping(true, 0.6)) << "velocities are noisy";
+  EXPECT_TRUE(is_stopping(true, -0.1));
+  EXPECT_TRUE(is_stopping(true, 0.0));
+  EXPECT_FALSE(is_stopping(true, 0.2)) << "it moves again";
+  EXPECT_FALSE(is_stopping(true, 0.2));
+  EXPECT_FALSE(is_stopping(false, 0.2));
+  EXPECT_TRUE(is_stopping(true, 0.2)) << "this is another stop";
+}
+
+TEST_F(StatedBraking, IsNotBelievedWhileTheVelocityIsNotKnown) {
+  EXPECT_FALSE(is_stopping(true, 0.0, false));
+  EXPECT_TRUE(is_stopping(true, 0.0, false)) << "two positions tell it";
+}
+
+}  // namespace
+}  // namespace clearance
