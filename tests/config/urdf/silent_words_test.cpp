@@ -18,6 +18,7 @@
 #include "config/urdf/robot_model.hpp"
 #include "config/urdf/urdf.hpp"
 #include "tests/shared/mistake_at.hpp"
+#include "tests/shared/repeats.hpp"
 #include "tests/shared/scratch_folder.hpp"
 
 namespace clearance {
@@ -333,9 +334,9 @@ TEST_F(SilentWords, NoRenamedAttributeChangesGeometryInSilence) {
   const std::string before = geometry_of(std::get<UrdfRobot>(read(kRich)));
   std::mt19937_64 random(57);
   const auto words = words_in(kRich, false);
-  int refused = 0, named = 0;
-  for (int i = 0; i < 10'000; ++i) {
-    const auto [at, size] = words[static_cast<std::size_t>(i) % words.size()];
+  std::uint64_t refused = 0, named = 0;
+  for (std::uint64_t i = 0; i < repeats(10'000); ++i) {
+    const auto [at, size] = words[i % words.size()];
     const std::string other = renamed(kRich.substr(at, size), random);
     std::string text = kRich;
     const auto result = read(text.replace(at, size, other));
@@ -345,16 +346,16 @@ TEST_F(SilentWords, NoRenamedAttributeChangesGeometryInSilence) {
     ++named;
     EXPECT_THAT(robot->notes, testing::Contains(HasSubstr("'" + other + "'"))) << text;
   }
-  EXPECT_GT(refused, 5'000);
-  EXPECT_GT(named, 0);
+  EXPECT_GT(refused, repeats(5'000));
+  EXPECT_GT(named, 0u);
 }
 
 TEST_F(SilentWords, NoRenamedElementChangesGeometryInSilence) {
   const std::string before = geometry_of(std::get<UrdfRobot>(read(kRich)));
   std::mt19937_64 random(58);
   const auto words = words_in(kRich, true);
-  for (int i = 0; i < 2'000; ++i) {
-    const auto [at, size] = words[static_cast<std::size_t>(i) % words.size()];
+  for (std::uint64_t i = 0; i < repeats(2'000); ++i) {
+    const auto [at, size] = words[i % words.size()];
     const std::string word = kRich.substr(at, size), other = renamed(word, random);
     if (word == "robot") continue;
     std::string text = kRich;
