@@ -74,9 +74,9 @@ class FigureLog {
  public:
   void note(plc::Cause cause, std::int64_t now_ns) {
     constexpr std::int64_t kEveryNs = 1'000'000'000;
-    if (cause != plc::Cause::kNone && cause != last_) due_ = cause;
+    if (cause != plc::Cause::kNone && last_ == plc::Cause::kNone) due_ = cause;
     last_ = cause;
-    const plc::Cause next = due_.value_or(cause);
+    const plc::Cause next = cause == plc::Cause::kNone ? due_.value_or(cause) : cause;
     const bool is_news = due_ || next != told_;
     if (!is_news || (told_ && now_ns - told_ns_ < kEveryNs)) return;
     due_.reset();

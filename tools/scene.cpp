@@ -74,7 +74,8 @@ CommandLine new_line(NewArguments& arguments) {
     for (std::size_t at = 0; at <= list.size();) {
       const std::size_t comma = std::min(list.find(',', at), list.size());
       const std::string body = list.substr(at, comma - at);
-      if (body != "table" && body != "machine" && body != "person") return false;
+      const auto known = {"table", "machine", "person", "camera"};
+      if (std::ranges::find(known, body) == known.end()) return false;
       at = comma + 1;
     }
     return true;
@@ -97,8 +98,9 @@ CommandLine new_line(NewArguments& arguments) {
            required()},
           {"--on", &arguments.bodies,
            "Bodies that the cell has, with commas between: a table that the robots stand on, a "
-           "machine with a door, a person",
-           expecting("a list of table, machine and person, such as table,person", are_bodies)},
+           "machine with a door, a person, a depth camera",
+           expecting("a list of table, machine, person and camera, such as table,person",
+                     are_bodies)},
           {"-o,--output", &arguments.output,
            "The cell file to write; paths in it are relative to it", shown()},
           {"--xacro", &arguments.xacro, "NAME:=VALUE, an argument for xacro; repeatable",

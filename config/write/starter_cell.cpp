@@ -17,6 +17,7 @@ constexpr double kTableTop = 0.75, kTableThickness = 0.05;
 constexpr double kTableBack = -0.4, kTableFront = 0.8, kTableBeside = 0.5;
 constexpr double kAboveTable = 0.05;  // the lowest moving link, where the zone `stop` is clear
 constexpr double kMachineAway = 0.6, kPersonAway = 2.0;
+constexpr double kCameraBeside = 2.0, kCameraHigh = 2.2;
 
 std::string quoted(const std::string& text) {
   YAML::Emitter out;
@@ -38,6 +39,7 @@ class StarterWriter {
   void write_table();
   void write_machine();
   void write_person();
+  void write_camera();
   void write_robot(std::size_t robot);
   void write_joints(const StarterRobot& robot);
   void write_pairs();
@@ -145,6 +147,31 @@ void StarterWriter::write_person() {
   line("    margin: 0.05                      # m: error of the tracker");
 }
 
+// Stands beside the robots, and looks at the middle between them, above the table.
+void StarterWriter::write_camera() {
+  const Vec3 at(0.0, y_.back() + kCameraBeside, kCameraHigh);
+  const Vec3 forward = Vec3(0.2, -at.y(), (options_.table ? kTableTop : 0.0) + 0.4 - at.z());
+  const double roll = -std::acos(forward.z() / forward.norm());
+  const double yaw = std::atan2(-forward.x(), forward.y());
+  line("# What the camera sees is an obstacle, if it is neither a robot nor a body of the cell.");
+  line("# Its depth images and CameraInfo come on topics of ROS 2 (config/KEYS.md#sensors).");
+  line("sensors:");
+  line("  - name: camera");
+  line("    depth_image: /camera/depth/image_rect_raw");
+  line(
+      "    depth_error: {{constant: 0.001, quadratic: 0.0025}}  # m, 1/m: by the maker, or "
+      "measured");
+  line("    range: [0.3, 5]                   # m: depths that count");
+  line("    max_speed: 1.6                    # m/s: of anything that it may see");
+  line("    age_limit_ms: 200                 # ms: twice the period of the images and their way");
+  line(
+      "    knows: true                       # a body of the cell is no obstacle for a second "
+      "time");
+  line("    # m, rad: of its optical frame, z forward, x right, y down; measure it");
+  line("    mount: {{pose: {{xyz: [{}, {}, {}], rpy: [{}, 0, {}]}}}}", mm(at.x()), mm(at.y()),
+       mm(at.z()), mm(roll), mm(yaw));
+}
+
 void StarterWriter::write_joints(const StarterRobot& robot) {
   line("    # Limits as the URDF has them. Where the controller's differ, uncomment and change:");
   line("    # joints:                         # rad and rad/s, or m and m/s where they slide");
@@ -200,6 +227,7 @@ void StarterWriter::write_pairs() {
     line("  - {{between: [{0}, {0}], publish: false}}", name);
     if (has_surroundings()) line("  - {{between: [{}, surroundings]}}", name);
     if (options_.person) line("  - {{between: [{}, person]}}", name);
+    if (options_.camera) line("  - {{between: [{}, camera]}}", name);
   }
   for (std::size_t a = 0; a < options_.robots.size(); ++a) {
     for (std::size_t b = a + 1; b < options_.robots.size(); ++b) {
@@ -256,7 +284,8 @@ void StarterWriter::write_people(const std::string& robot) {
 }
 
 void StarterWriter::write_zones() {
-  if (options_.robots.size() == 1 && !has_surroundings() && !options_.person) return;
+  if (options_.robots.size() == 1 && !has_surroundings() && !options_.person && !options_.camera)
+    return;
   line(
       "# Distances less margins. tools/TUTORIAL.md has the rules for thresholds by speed and "
       "brake.");
@@ -266,6 +295,7 @@ void StarterWriter::write_zones() {
     if (has_surroundings()) write_distance_zones(name, "surroundings", 0.02, 0.1);
     for (std::size_t b = a + 1; b < options_.robots.size(); ++b)
       write_distance_zones(name, options_.robots[b].name, 0.05, 0.2);
+    if (options_.camera) write_distance_zones(name, "camera", 0.1, 0.4);
     if (options_.person) write_people(name);
   }
 }
@@ -278,6 +308,7 @@ std::string StarterWriter::write() {
   if (options_.person) write_person();
   line("robots:");
   for (std::size_t i = 0; i < options_.robots.size(); ++i) write_robot(i);
+  if (options_.camera) write_camera();
   write_pairs();
   write_exceptions();
   write_zones();

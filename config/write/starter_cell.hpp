@@ -34,7 +34,7 @@ struct StarterOptions {
   std::string name;
   std::filesystem::path directory;  // of the cell: paths are relative to it
   std::vector<StarterRobot> robots;
-  bool table = false, machine = false, person = false;
+  bool table = false, machine = false, person = false, camera = false;
 };
 
 // With the joints where StarterRobot has them, nothing in the cell touches but what it allows.

@@ -26,10 +26,12 @@ def blocks(page):
     return re.findall(r"^```(\w*)\n(.*?)^```$", text_of(page), re.DOTALL | re.MULTILINE)
 
 
-def for_this_machine(text):
+def for_this_machine(page, text):
     """The block of code in a partition of its own."""
-    return text.replace("partition: tutorial", f"partition: tutorial-{os.getpid()}").replace(
-        "--partition tutorial", f"--partition tutorial-{os.getpid()}")
+    own = f"tutorial-{os.getpid()}"
+    if page == "FIRST_DAY.md":  # it names none
+        return re.sub(r"\b(clearanced|clearance-robot|clearance-watch) (?!--check)", rf"\1 --partition {own} ", text)
+    return text.replace("partition: tutorial", f"partition: {own}").replace("--partition tutorial", f"--partition {own}")
 
 
 def pattern(line):
@@ -45,13 +47,16 @@ class Tutorial(unittest.TestCase):
     def test_its_commands_run_and_print_what_it_shows(self):
         self.assertEqual(self.follow("TUTORIAL.md"), (5, 7))
 
+    def test_the_first_day_does_as_well(self):
+        self.assertEqual(self.follow("FIRST_DAY.md", "first"), (4, 2))
+
     def test_the_one_of_stops_does_as_well(self):
         self.assertEqual(self.follow("STOPS_TUTORIAL.md"), (5, 8))
 
     def test_the_page_of_questions_asks_what_it_shows(self):
         self.assertEqual(self.follow("../idl/QUESTIONS.md"), (1, 2))
 
-    def follow(self, page):
+    def follow(self, page, subfolder="tutorial"):
         """Runs the page's commands; returns how many blocks have run, and how many lines were compared."""
         with tempfile.TemporaryDirectory() as home:
             share = pathlib.Path(home) / "clearance/share/clearance"
@@ -61,7 +66,7 @@ class Tutorial(unittest.TestCase):
             folder, output, ran, compared, recording = home, "", 0, 0, ""
 
             def run(text):
-                return subprocess.run(["bash", "-euo", "pipefail", "-c", for_this_machine(text)], cwd=folder, env=environment,
+                return subprocess.run(["bash", "-euo", "pipefail", "-c", for_this_machine(page, text)], cwd=folder, env=environment,
                                       capture_output=True, text=True, timeout=120)
 
             for language, text in blocks(page):
@@ -76,7 +81,7 @@ class Tutorial(unittest.TestCase):
                         (folder / "run.mcap").unlink()
                         self.assertEqual(run(recording).returncode, 0)
                         done = run(text)
-                    folder = pathlib.Path(home) / "tutorial"
+                    folder = pathlib.Path(home) / subfolder
                     log = folder / "daemon.log"
                     output = done.stdout + done.stderr
                     self.assertEqual(done.returncode, 0, text + output + (log.read_text() if log.exists() else ""))

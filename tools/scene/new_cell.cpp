@@ -255,6 +255,7 @@ int new_cell(const NewArguments& arguments) {
     options.table = options.table || body == "table";
     options.machine = options.machine || body == "machine";
     options.person = options.person || body == "person";
+    options.camera = options.camera || body == "camera";
   }
   const int written = write_cell(starter_cell(options), arguments.output);
   if (written == kOk) print_next_commands(arguments.output, options.person);
