@@ -1,7 +1,7 @@
 // Serves registers by Modbus TCP to several clients from one thread. libmodbus makes the answers.
 //
-// No client can hold up another one. No call waits for a client, and each has a share of every step.
-// A client that sends what is no Modbus, or does not read its answers, is dropped.
+// No client can hold up another one. No call waits for a client, and each has a share of every
+// step. A client that sends what is no Modbus, or does not read its answers, is dropped.
 #pragma once
 
 #include <array>

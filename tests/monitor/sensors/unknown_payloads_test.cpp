@@ -30,7 +30,7 @@ constexpr int kPictures = 40;
 // Random postures of a test.
 const int kSeeds = static_cast<int>(repeats(20));
 const int kFewSeeds = static_cast<int>(repeats(8));  // where each posture has to pass
-constexpr int kMostCommands = 5;  // until all of a box is known
+constexpr int kMostCommands = 5;                     // until all of a box is known
 
 // The left arm swings over the table before a wall, and the right one rests. Each seed has another
 // posture and other swings.
