@@ -160,6 +160,8 @@ void use_carried_loads(const ObjectList& list, RobotList& robots, Diagnostics& d
         continue;
       }
       const double chosen = step->load;
+      stops.load.mass = mass.value_or(kInfinity);
+      stops.load.step = chosen;
       std::erase_if(stops.steps, [&](const StopStep& each) { return each.load != chosen; });
     }
     stops.joints = stops.steps.back().joints;

@@ -347,6 +347,28 @@ TEST_F(SceneProgram, PrintsAndPlotsHowFarEachJointGoesOn) {
   EXPECT_NE(svg.find("j, deg"), std::string::npos);
 }
 
+TEST_F(SceneProgram, PrintsWhichLoadCountsForTheStops) {
+  std::ofstream(directory_ / "chain.urdf") << chain_urdf();
+  std::ofstream(directory_ / "stops.csv") << "joint,load_percent,speed_percent,time_ms,angle_deg\n"
+                                             "1,50,100,200,8\n1,100,100,300,16\n";
+  const auto printed = [&](const std::string& mass) {
+    std::string cell = stopping_chain(
+        ", stopping: {reaction_ms: 40, table: stops.csv, time_ms: 200, load: {full: 4, tool: "
+        "0.5}}");
+    cell.insert(cell.find("}]\npairs"),
+                "}, {name: part, sphere: {radius: 0.01}, attached: {to: c}" + mass);
+    std::ofstream(directory_ / "cell.yaml") << cell;
+    EXPECT_EQ(run({"stops", file("cell.yaml")}), 0) << output_;
+    return output_;
+  };
+  EXPECT_NE(printed(", mass: 1").find("rows up to 50 % of the load, for 1.5 kg of 4 kg\n"),
+            std::string::npos)
+      << output_;
+  EXPECT_NE(printed("").find("rows up to 100 % of the load, since not all that it carries has"),
+            std::string::npos)
+      << output_;
+}
+
 TEST_F(SceneProgram, SaysThatACellStatesNoStopsOrWhyItsTableIsRefused) {
   std::ofstream(directory_ / "chain.urdf") << chain_urdf();
   std::ofstream(directory_ / "cell.yaml") << stopping_chain("");

@@ -50,6 +50,15 @@ void each_joint(const Scene& scene, Visit&& visit) {
   }
 }
 
+// Returns the load that counts, if masses choose it.
+std::string load_of(const CarriedLoad& load) {
+  if (!(load.full > 0.0)) return "";
+  return fmt::format("\n  rows up to {:g} % of the load, {}", 100.0 * load.step,
+                     std::isfinite(load.mass)
+                         ? fmt::format("for {:g} kg of {:g} kg", load.mass, load.full)
+                         : "since not all that it carries has a mass");
+}
+
 // Returns the steps of the extension, if postures choose among them.
 std::string steps_of(const RobotStops& stops) {
   std::vector<std::string> steps;
@@ -78,11 +87,11 @@ std::string stop_table(const Scene& scene) {
   each_joint(scene, [&](const Robot& robot, const ShownJoint& shown) {
     if (std::exchange(last, &robot) != &robot) {
       text += fmt::format(
-          "{}: category {}, brakes act after {:.0f} ms, the path is {}{}\n{:<24} {:>14} {:>14} "
+          "{}: category {}, brakes act after {:.0f} ms, the path is {}{}{}\n{:<24} {:>14} {:>14} "
           "{:>9}\n",
           robot.name, robot.stopping.category, 1e3 * robot.stopping.reaction,
-          robot.stopping.keeps_path ? "kept" : "left", steps_of(robot.stopping), "  joint",
-          "from, per s", "goes on for", "in, ms");
+          robot.stopping.keeps_path ? "kept" : "left", load_of(robot.stopping.load),
+          steps_of(robot.stopping), "  joint", "from, per s", "goes on for", "in, ms");
     }
     for (const double speed : speeds_of(shown)) {
       text += fmt::format("  {:<22} {:>10.2f} {:<3} {:>10.3f} {:<3} {:>9.0f}\n", shown.joint.name,
