@@ -143,13 +143,17 @@ void RobotInputs::save(StateWriter& out) const {
 }
 
 void RobotInputs::restore(StateReader& in) noexcept {
+  const std::vector<TrackedVariable> own = variables_;
   in.take(std::span(variables_));
+  for (std::size_t i = 0; i < own.size(); ++i) in.expect(variables_[i].is_sound(own[i]));
   for (auto heard : heard_) {
     bool value = false;
     in.take(value);
-    heard = value;
+    in.expect(are_flags(value));
+    heard = in.good() && value;
   }
   in.take(std::span(seen_));
+  for (const SeenCount& seen : seen_) in.expect(are_flags(seen.denied));
 }
 
 void RobotInputs::place(std::int64_t now_ns, std::span<TrackedObject> objects) noexcept {

@@ -3,13 +3,17 @@
 namespace clearance {
 namespace {
 
-// The body may be another one: what follows from the body stays.
+// What follows from the body stays.
+void keep_body(const TrackedObject& own, TrackedObject& now) noexcept {
+  now.landmarks = own.landmarks;
+  now.bounding_radius = own.bounding_radius;
+}
+
+// The body may be another one.
 void take_over(const TrackedObject& before, TrackedObject& now) noexcept {
-  const Landmarks landmarks = now.landmarks;
-  const double bounding_radius = now.bounding_radius;
+  const TrackedObject own = now;
   now = before;
-  now.landmarks = landmarks;
-  now.bounding_radius = bounding_radius;
+  keep_body(own, now);
   now.rest.holds = false;
 }
 
@@ -43,13 +47,24 @@ void save(const Inputs& inputs, StateWriter& out) {
   out.put(inputs.rejected);
 }
 
-void restore(StateReader& in, Inputs& inputs) noexcept {
+void restore(StateReader& in, const Scene& scene, Inputs& inputs) noexcept {
+  constexpr std::uint64_t kMostCycles = std::uint64_t{1} << 62;
   in.take(inputs.cycle);
+  in.expect(inputs.cycle < kMostCycles);
   in.take(inputs.time);
+  const auto objects = inputs.objects;
   in.take(std::span(inputs.objects));
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    in.expect(inputs.objects[i].is_sound(objects[i]));
+    // No pose of its own shows that a link is there.
+    in.expect(i < inputs.robots.first_link() || inputs.objects[i].absent == objects[i].absent);
+    keep_body(objects[i], inputs.objects[i]);
+  }
   in.take(std::span(inputs.sensors));
+  for (const CarriedSensor& sensor : inputs.sensors) in.expect(has(scene, sensor.carrier));
   inputs.robots.restore(in);
   in.take(inputs.sources);
+  for (const SourceClock& clock : inputs.sources) in.expect(clock.is_sound());
   in.take(inputs.rejected);
   inputs.visits.visit_all();
 }

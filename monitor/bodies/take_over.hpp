@@ -16,6 +16,6 @@ void take_over(const Inputs& before, const SceneMap& map, const Scene& scene,
 
 // The same through bytes, for inputs of the same scene in another process.
 void save(const Inputs& inputs, StateWriter& out);
-void restore(StateReader& in, Inputs& inputs) noexcept;
+void restore(StateReader& in, const Scene& scene, Inputs& inputs) noexcept;
 
 }  // namespace clearance

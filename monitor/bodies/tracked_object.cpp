@@ -45,6 +45,10 @@ bool is_zero(const Twist& twist) noexcept {
   return twist.linear == Vec3::Zero() && twist.angular == Vec3::Zero();
 }
 
+bool usable(const Pose& pose) noexcept {
+  return pose.position.cwiseAbs().maxCoeff() <= kLargestCoordinate && is_unit(pose.orientation);
+}
+
 // The sample is not a pose at all, whichever source sent it.
 std::optional<Reject> malformed(const PoseSample& sample) noexcept {
   if (!usable(sample)) return Reject::kNonFinite;
@@ -124,6 +128,24 @@ void PoseCandidate::rest_from_now() noexcept {
 }
 
 }  // namespace
+
+bool TrackedObject::is_sound(const TrackedObject& own) const noexcept {
+  const bool flags =
+      are_flags(moved, newly_known, discontinuous, plain, absent, rest.holds, rest.has_twist) &&
+      are_flags(twist_known, follows_joints, joints_late, joints_contradicted,
+                pose_last_tick_known);
+  const bool bounds = may_have_moved >= 0.0 && unobserved >= 0.0 && displacement >= 0.0 &&
+                      accumulated_last_tick >= 0.0 && accumulated >= accumulated_last_tick &&
+                      accumulated < kInfinity && bend >= 0.0 && accumulated_turn >= 0.0 &&
+                      accumulated_turn < kInfinity && unobserved_by_joints >= 0.0 &&
+                      motion.shift >= 0.0 && motion.turn >= 0.0;
+  const bool values = usable(pose) && usable(pose_last_tick) && usable(pose_before) &&
+                      twist.linear.allFinite() && twist.angular.allFinite();
+  const bool is_where_it_is = own.input.ages || same_pose(pose, own.pose);
+  const bool is_there = !absent || (own.input.ages && !input.has_value);
+  return flags && bounds && values && is_where_it_is && is_there && input.is_sound(own.input) &&
+         plausibility.is_sound();
+}
 
 TrackedObject initial_state(const Object& object) {
   TrackedObject state;

@@ -78,6 +78,8 @@ struct alignas(64) TrackedObject {
     if (follows_joints) return false;
     return !input.has_value || (plain && !moved && accumulated_last_tick == accumulated);
   }
+  // `own`: before anything was heard. What follows from the body alone is not compared.
+  [[nodiscard]] bool is_sound(const TrackedObject& own) const noexcept;
   // True if there is a bound on where it is now.
   [[nodiscard]] bool known() const noexcept {
     return input.has_value && may_have_moved < kInfinity;

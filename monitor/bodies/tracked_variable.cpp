@@ -122,6 +122,13 @@ double largest_distance(const JointVariable& variable, const TrackedVariable& st
 
 }  // namespace
 
+bool TrackedVariable::is_sound(const TrackedVariable& own) const noexcept {
+  const bool are_speeds = may_have_moved >= 0.0 && sent_speed >= 0.0 && slowest_braking >= 0.0;
+  return are_flags(velocity_known, is_stopping, velocities_contradict, outside_limits) &&
+         input.is_sound(own.input) && usable(position) && std::isfinite(velocity) && are_speeds &&
+         std::isfinite(sent_speed) && plausibility.is_sound();
+}
+
 std::optional<Reject> take(const JointVariable& variable, const JointSample& sample,
                            std::int64_t stamp_ns, const SampleLimits& limits,
                            TrackedVariable& state, Repetition& of_joint) noexcept {

@@ -31,6 +31,9 @@ struct TrackedVariable {
   bool outside_limits = false;         // a position was refused for that since one was taken
   Repetition repetition;               // of all positions of the joint; at its first variable
   Plausibility<JointMetric> plausibility;
+
+  // `own`: before anything was heard.
+  [[nodiscard]] bool is_sound(const TrackedVariable& own) const noexcept;
 };
 
 // Takes a sample into use, or returns why it must not be used and updates the contradiction state.

@@ -8,6 +8,8 @@
 #include <cstdint>
 #include <limits>
 
+#include "monitor/inputs/state_bytes.hpp"
+
 namespace clearance {
 
 // All times are in the tick's time.
@@ -27,6 +29,7 @@ class Contradiction {
   [[nodiscard]] bool holds(std::int64_t now_ns) const noexcept {
     return !agrees_again_ || now_ns <= until_ns_;
   }
+  [[nodiscard]] bool is_sound() const noexcept { return are_flags(agrees_again_); }
 
  private:
   std::int64_t until_ns_ = std::numeric_limits<std::int64_t>::min();

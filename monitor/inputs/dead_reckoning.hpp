@@ -8,6 +8,7 @@
 
 #include "monitor/inputs/elapsed.hpp"
 #include "monitor/inputs/motion_limits.hpp"
+#include "monitor/inputs/state_bytes.hpp"
 
 namespace clearance {
 
@@ -81,6 +82,9 @@ class Reckoning {
   // Values like that were left out up to this stamp.
   void catch_up(std::int64_t stamp_ns) noexcept { last_ns_ = stamp_ns; }
 
+  [[nodiscard]] bool is_sound() const noexcept {
+    return are_flags(any_, short_.repeats) && agreement_ <= Agreement::kRatesContradict;
+  }
   // True if the rates have moved by more than any error.
   [[nodiscard]] bool has_moved(const MotionLimits& limits) const noexcept {
     return path_ > 2.0 * largest_error(path_, fastest_, limits);

@@ -9,6 +9,7 @@
 
 #include "monitor/inputs/elapsed.hpp"
 #include "monitor/inputs/pose_batch.hpp"
+#include "monitor/inputs/state_bytes.hpp"
 
 namespace clearance {
 
@@ -71,6 +72,11 @@ class Owner {
   [[nodiscard]] Source source() const noexcept { return source_; }
   // The last source that was refused because it is not the owner. kNobody after the owner changed.
   [[nodiscard]] Source other_source() const noexcept { return other_; }
+  // `own`: what the scene states.
+  [[nodiscard]] bool is_sound(const Owner& own) const noexcept {
+    return are_flags(is_stated_) && is_stated_ == own.is_stated_ &&
+           (!is_stated_ || source_ == own.source_);
+  }
 
  private:
   // The first three are all that a sample of the owner reads and writes.

@@ -11,6 +11,7 @@
 #include "monitor/inputs/elapsed.hpp"
 #include "monitor/inputs/input_owner.hpp"
 #include "monitor/inputs/pose_batch.hpp"
+#include "monitor/inputs/state_bytes.hpp"
 
 namespace clearance {
 
@@ -35,6 +36,12 @@ struct InputRecord {
     stamp_ns = less(now_ns, kForgottenNs);
     owner.forget_age(now_ns);
     contradiction.forget_age();
+  }
+
+  // `own`: before anything was heard.
+  [[nodiscard]] bool is_sound(const InputRecord& own) const noexcept {
+    return are_flags(has_value, late, contradicted, ages) && ages == own.ages &&
+           (has_value || ages) && contradiction.is_sound() && owner.is_sound(own.owner);
   }
 
   // now - stamp, never negative; 0 for a fixed object, -1: no value.

@@ -30,6 +30,7 @@
 #include "monitor/inputs/elapsed.hpp"
 #include "monitor/inputs/motion_limits.hpp"
 #include "monitor/inputs/pose_batch.hpp"
+#include "monitor/inputs/state_bytes.hpp"
 
 namespace clearance {
 
@@ -129,6 +130,7 @@ class OtherPlace {
     return elapsed(since_ns_, stamp_ns) >= kTakenAfterNs;
   }
   void clear() noexcept { any_ = false; }
+  [[nodiscard]] bool is_sound() const noexcept { return are_flags(any_); }
 
  private:
   bool any_ = false;
@@ -216,6 +218,10 @@ class Plausibility {
   // agree with rates that have moved, or when they move less than the rates say. The latter ends it
   // only if no rate was one that the input cannot have.
   [[nodiscard]] bool rates_contradict() const noexcept { return rates_contradict_; }
+  [[nodiscard]] bool is_sound() const noexcept {
+    return are_flags(value_contradicts_rates_, rates_contradict_, rates_are_impossible_) &&
+           reckoning_.is_sound() && other_place_.is_sound();
+  }
   // Call this for a rate that the input cannot have.
   void distrust_rates() noexcept { rates_contradict_ = rates_are_impossible_ = true; }
 

@@ -61,6 +61,7 @@ class SourceName {
   [[nodiscard]] const char* c_str() const noexcept { return text_.data(); }
   [[nodiscard]] std::string_view view() const noexcept { return text_.data(); }
   bool operator==(const SourceName&) const = default;
+  [[nodiscard]] bool is_sound() const noexcept { return text_.back() == 0; }
 
  private:
   std::array<char, kMaxSourceLength + 1> text_{};  // the rest is zeros

@@ -11,6 +11,11 @@ void pass_on(std::span<const std::uint32_t> now, std::vector<std::uint32_t>& ids
   for (std::uint32_t& id : ids) id = id < now.size() ? now[id] : SceneMap::kNone;
 }
 
+bool lead_to(std::size_t count, std::span<const std::uint32_t> ids) noexcept {
+  return std::ranges::all_of(ids,
+                             [=](std::uint32_t id) { return id < count || id == SceneMap::kNone; });
+}
+
 }  // namespace
 
 bool SceneIds::append(const PoseBatch& batch, std::vector<PoseSample>& poses,
@@ -42,18 +47,22 @@ void SceneIds::save_former(StateWriter& out) const {
   });
 }
 
-void SceneIds::restore_former(StateReader& in) {
+void SceneIds::restore_former(StateReader& in, const Scene& scene) {
   constexpr std::size_t kMostIds = 1 << 20;
   std::size_t scenes = 0;
   in.take(has_changed_);
+  in.expect(are_flags(has_changed_));
   in.take(scenes);
+  in.expect(scenes <= kFormerScenes);
   former_.clear();
-  for (std::size_t i = 0; i < std::min(scenes, kFormerScenes); ++i) {
+  for (std::size_t i = 0; in.good() && i < scenes; ++i) {
     std::uint64_t revision = 0;
     in.take(revision);
     auto& kept = former_.slot(revision).kept;
     in.take_list(kept.objects_now, kMostIds);
     in.take_list(kept.variables_now, kMostIds);
+    in.expect(lead_to(scene.objects.size(), kept.objects_now) &&
+              lead_to(scene.variables.size(), kept.variables_now));
   }
 }
 

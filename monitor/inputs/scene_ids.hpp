@@ -64,7 +64,7 @@ class SceneIds {
 
   // Passes the ids of former scenes on, for ids of the same scene elsewhere. May allocate.
   void save_former(StateWriter& out) const;
-  void restore_former(StateReader& in);
+  void restore_former(StateReader& in, const Scene& scene);
 
   [[nodiscard]] std::uint64_t revision() const noexcept { return revision_; }
   [[nodiscard]] SourceNumbers& sources() noexcept { return sources_; }

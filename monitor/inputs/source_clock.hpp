@@ -17,6 +17,7 @@
 
 #include <cstdint>
 
+#include "monitor/inputs/state_bytes.hpp"
 #include "monitor/inputs/tick_time.hpp"
 
 namespace clearance {
@@ -37,6 +38,7 @@ class SourceClock {
 
   // Call this after a tick that does not know how much time has passed.
   void forget() noexcept { *this = {}; }
+  [[nodiscard]] bool is_sound() const noexcept { return are_flags(heard_, agrees_); }
 
  private:
   // Returns true if this stamp confirms the new offset. `new_ns` and `old_ns` are the stamp in the

@@ -4,6 +4,8 @@
 #include <limits>
 #include <string_view>
 
+#include "monitor/inputs/state_bytes.hpp"
+
 namespace clearance {
 namespace {
 
@@ -33,6 +35,16 @@ bool SourceNumbers::add_named(std::span<const SourceName> sources) noexcept {
   }
   if (free < 0) return false;
   for (const SourceName& source : sources) places_[of(source)].is_named = true;
+  return true;
+}
+
+// Sources that the cell names come first, and keep their numbers.
+bool SourceNumbers::is_sound(const SourceNumbers& own) const noexcept {
+  for (std::size_t i = 0; i < places_.size(); ++i) {
+    const Place &place = places_[i], &stated = own.places_[i];
+    if (!are_flags(place.is_named) || !place.source.is_sound()) return false;
+    if (stated.is_named && !(place.is_named && place.source == stated.source)) return false;
+  }
   return true;
 }
 

@@ -33,6 +33,8 @@ class SourceNumbers {
   // where the capacities suffice.
   void append(const PoseBatch& batch, std::vector<PoseSample>& poses,
               std::vector<JointSample>& joints);
+  // `own`: before anything was heard.
+  [[nodiscard]] bool is_sound(const SourceNumbers& own) const noexcept;
   // Returns an empty name when no source has that number.
   [[nodiscard]] SourceName name(std::uint32_t number) const noexcept;
 

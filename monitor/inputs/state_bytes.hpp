@@ -1,5 +1,9 @@
 // The state of a monitor as bytes, for a monitor of the same scene in the same build elsewhere.
 // Both sides go through the same lists in the same order.
+//
+// Bytes from elsewhere may be forged. So each value that was taken is checked before it is used
+// (`is_sound`): flags and enumerators are some, indices are of the scene, numbers are finite, and
+// what the scene determines is what this scene has.
 #pragma once
 
 #include <cstddef>
@@ -35,8 +39,19 @@ class StateWriter {
   std::vector<std::byte>& bytes_;
 };
 
-// Takes them out again. A list of another length, or bytes that end too early, fail this and all
-// later calls.
+// True if the bytes of these are those of flags. Another byte must not be read as one.
+template <class... Flags>
+[[nodiscard]] bool are_flags(const Flags&... flags) noexcept {
+  const auto is_flag = [](const bool& flag) {
+    unsigned char byte = 0;
+    std::memcpy(&byte, &flag, 1);
+    return byte <= 1;
+  };
+  return (is_flag(flags) && ...);
+}
+
+// Takes them out again. A list of another length, bytes that end too early, or a value that is not
+// sound fail this and all later calls.
 class StateReader {
  public:
   explicit StateReader(std::span<const std::byte> bytes) : bytes_(bytes) {}
@@ -62,6 +77,9 @@ class StateReader {
     values.resize(count);
     copy(values.data(), count * sizeof(T));
   }
+  // What was taken is refused unless this holds.
+  void expect(bool is_sound) noexcept { good_ = good_ && is_sound; }
+  [[nodiscard]] bool good() const noexcept { return good_; }
   // True if everything was taken, and nothing remains.
   [[nodiscard]] bool complete() const noexcept { return good_ && bytes_.empty(); }
 

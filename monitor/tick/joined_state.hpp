@@ -17,12 +17,13 @@ namespace clearance {
 class JoinedState {
  public:
   explicit JoinedState(const Scene& scene)
-      : monitor_(std::make_unique<Monitor>(scene)), ids_(scene) {}
+      : scene_(scene), monitor_(std::make_unique<Monitor>(scene)), ids_(scene) {}
 
-  // Reads the bytes of save_state(). False: they do not fit this scene.
+  // Reads the bytes of save_state(). False: they do not fit this scene, or have values that no
+  // monitor of it can have.
   [[nodiscard]] bool restore(std::span<const std::byte> bytes, std::uint64_t lineage) {
     lineage_ = lineage;
-    return restore_state(bytes, ids_, *monitor_);
+    return restore_state(bytes, scene_, ids_, *monitor_);
   }
 
   [[nodiscard]] bool has_joined() const noexcept { return has_joined_; }
@@ -32,6 +33,7 @@ class JoinedState {
  private:
   friend class TickState;
 
+  const Scene& scene_;  // outlives this
   std::unique_ptr<Monitor> monitor_;
   SceneIds ids_;
   std::uint64_t lineage_ = 0;

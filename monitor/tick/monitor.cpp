@@ -124,13 +124,14 @@ void Monitor::save(StateWriter& out) const {
 bool Monitor::restore(StateReader& in) noexcept {
   State& s = *state_;
   CLEARANCE_INVARIANT(s.displacer.is_first());
-  clearance::restore(in, s.inputs);
+  clearance::restore(in, s.scene, s.inputs);
   s.contacts.restore(in);
   s.zones.restore(in);
-  s.zones.count_absent(s.inputs.objects);
+  if (in.good()) s.zones.count_absent(s.inputs.objects);
   for (State::Shown& shown : s.shown) {
     in.take(shown.awaited);
     in.take(shown.clock);
+    in.expect(shown.clock.is_sound());
   }
   return in.complete();
 }

@@ -21,12 +21,16 @@ inline void save_state(const SourceNumbers& numbers, const SceneIds& ids, const 
   monitor.save(out);
 }
 
-// `ids` and `monitor` are new ones of the scene. False: the bytes do not fit it.
-[[nodiscard]] inline bool restore_state(std::span<const std::byte> bytes, SceneIds& ids,
-                                        Monitor& monitor) {
+// `ids` and `monitor` are new ones of the scene. False: the bytes do not fit it, or have values
+// that no monitor of it can have.
+[[nodiscard]] inline bool restore_state(std::span<const std::byte> bytes, const Scene& scene,
+                                        SceneIds& ids, Monitor& monitor) {
   StateReader in(bytes);
+  const SourceNumbers own = ids.sources();
   in.take(ids.sources());
-  ids.restore_former(in);
+  in.expect(ids.sources().is_sound(own));
+  ids.restore_former(in, scene);
+  if (!in.good()) return false;
   return monitor.restore(in);
 }
 

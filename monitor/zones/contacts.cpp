@@ -65,14 +65,17 @@ void Contacts::save(StateWriter& out) const {
   out.put(std::span(reports_));
 }
 
-// Contacts keep their pairs of this scene.
 void Contacts::restore(StateReader& in) noexcept {
-  const std::vector<ContactReport> own = reports_;
+  const std::vector<Entry> entries = entries_;
+  const std::vector<ContactReport> reports = reports_;
   in.take(std::span(entries_));
   in.take(std::span(reports_));
-  for (std::size_t i = 0; i < own.size(); ++i) {
-    reports_[i].contact = own[i].contact;
-    reports_[i].pair = own[i].pair;
+  for (std::size_t i = 0; i < reports.size(); ++i) {
+    const ContactReport& report = reports_[i];
+    in.expect(entries_[i].least_allowed == entries[i].least_allowed &&
+              entries_[i].end == entries[i].end && are_flags(entries_[i].was_far));
+    in.expect(report.contact == reports[i].contact && report.pair == reports[i].pair &&
+              report.status <= ContactStatus::kAbsent && report.ended <= ContactEnded::kByCycle);
   }
 }
 

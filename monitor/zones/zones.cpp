@@ -65,12 +65,15 @@ void Zones::take_over(const Zones& before, const SceneMap& map) noexcept {
 
 void Zones::save(StateWriter& out) const { out.put(std::span(reports_)); }
 
-// Bytes that are not of this scene name no pair beyond it.
 void Zones::restore(StateReader& in) noexcept {
   in.take(std::span(reports_));
-  for (ZoneReport& report : reports_)
-    if (report.pair >= scene_.pairs.size()) report.pair = 0;
-  begin_tick();
+  for (const ZoneReport& report : reports_) {
+    in.expect(are_flags(report.active, report.certified, report.changed) &&
+              report.cause <= ZoneCause::kNoShare);
+    in.expect(report.pair < std::max<std::size_t>(scene_.pairs.size(), 1) &&
+              report.cause_object < std::max<std::size_t>(scene_.objects.size(), 1));
+  }
+  if (in.good()) begin_tick();
 }
 
 void Zones::count_absent(std::span<const TrackedObject> objects) noexcept {

@@ -4,6 +4,9 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <string>
 #include <vector>
 
 #include "monitor/tick/tick_state.hpp"
@@ -11,12 +14,20 @@
 #include "tests/monitor/tick/scara_cell.hpp"
 #include "tests/monitor/tick/small_cells.hpp"
 #include "tests/monitor/tick/taken_over.hpp"
+#include "tests/shared/random.hpp"
+#include "tests/shared/repeats.hpp"
 
 namespace clearance {
 namespace {
 
 using test::kStart;
 using test::kTick;
+
+// CLEARANCE_FORGERIES: how many forged states are tried.
+std::uint64_t forgeries() {
+  const char* const asked = std::getenv("CLEARANCE_FORGERIES");
+  return asked == nullptr ? 1'000'000 : std::stoull(asked);
+}
 
 // A robot whose joints move, and now and then jump or are late; a zone and an allowed contact.
 class SavedState : public testing::Test {
@@ -85,6 +96,53 @@ TEST_F(SavedState, OfAnotherSceneOrCutOffIsRefused) {
   }
   bytes.push_back({});
   EXPECT_FALSE(JoinedState(scene).restore(bytes, 1));
+}
+
+// A stranger in the partition forges a state: its length and checksum fit, and some of its bytes
+// are drawn. It is refused, or the ticks that go on from it break no invariant. In builds with
+// sanitizers, they touch no foreign memory, and read no byte as a flag that is none.
+TEST_F(SavedState, ThatIsForgedIsRefusedOrHarmless) {
+  scene.objects[1].source = "cart";
+  Monitor monitor(scene);
+  for (int i = 0; i < 45; ++i, ++ticks) tick(monitor);
+  std::vector<std::byte> genuine;
+  save_state(SourceNumbers(scene), SceneIds(scene),
+             *test::taken_over(monitor, scene, scene, numbers), genuine);
+  constexpr std::uint64_t kDrawn[] = {0,
+                                      1,
+                                      2,
+                                      ~std::uint64_t{0},
+                                      0x7ff0'0000'0000'0000,
+                                      0x7ff8'0000'0000'0000,
+                                      0xfff0'0000'0000'0000,
+                                      0x7fff'ffff'ffff'ffff,
+                                      0x8000'0000'0000'0000};
+  Random random(63);
+  std::uint64_t refused = 0, joined_states = 0;
+  const int until = ticks;
+  for (std::uint64_t forgery = 0; forgery < repeats(forgeries()); ++forgery) {
+    std::vector<std::byte> bytes = genuine;
+    for (int changes = random.integer(1, 3); changes > 0; --changes) {
+      const std::uint64_t value =
+          random.chance(0.5) ? random.next() : kDrawn[random.next() % std::size(kDrawn)];
+      const std::size_t width = random.chance(0.4) ? 1 : random.chance(0.5) ? 4 : 8;
+      const std::size_t at = random.next() % (bytes.size() - width);
+      std::memcpy(bytes.data() + at - (random.chance(0.8) ? at % width : 0), &value, width);
+    }
+    JoinedState joined(scene);
+    if (!joined.restore(bytes, 1)) {
+      ++refused;
+      continue;
+    }
+    TickState restored(scene);
+    if (!restored.may_join(joined)) continue;
+    ++joined_states;
+    restored.join(joined);
+    ticks = until;
+    for (int i = 0; i < 4; ++i, ++ticks) tick(restored.monitor());
+  }
+  EXPECT_GT(refused, repeats(forgeries()) / 10);
+  EXPECT_GT(joined_states, repeats(forgeries()) / 10);
 }
 
 }  // namespace
