@@ -66,8 +66,9 @@ class PublishingSink final : public ReportSink {
   std::uint64_t late_responses = 0;
 };
 
-struct Run {
-  Run(Scene scene, std::vector<std::int64_t> delays, PoseSource& poses) : scene(std::move(scene)) {
+struct RunOf {
+  RunOf(Scene scene, std::vector<std::int64_t> delays, PoseSource& poses)
+      : scene(std::move(scene)) {
     sink.delays = std::move(delays);
     TickLoop loop(this->scene, poses, {&sink}, clock, {.max_ticks = sink.delays.size()});
     const std::atomic<bool> stop = false;
@@ -80,7 +81,7 @@ struct Run {
 
 TEST(TickLoop, TellsEachTickTheLongestDelayThatWasMeasuredBefore) {
   test::ListedPoses none;
-  const Run run(test::two_balls(), {5, 3, 9, 4, 4}, none);
+  const RunOf run(test::two_balls(), {5, 3, 9, 4, 4}, none);
   EXPECT_EQ(run.sink.told, (std::vector<std::int64_t>{TickTime::kNotMeasured, 5, 5, 9, 9}));
 }
 
@@ -109,7 +110,7 @@ TEST(TickLoop, BeyondTheResponseLimitReportsAreFailSafeUntilTheDelayIsForgotten)
   } poses;
   std::vector<std::int64_t> delays(200, test::kTick);
   delays[20] = 11 * test::kTick;
-  const Run run(scene, delays, poses);
+  const RunOf run(scene, delays, poses);
   EXPECT_TRUE(run.sink.unknown[0]) << "nothing is measured yet";
   std::size_t fail_safe = 0;
   for (std::size_t i = 1; i < 200; ++i) {
@@ -127,7 +128,7 @@ TEST(TickLoop, TellsHowOldTheValuesAreThatEachSourceSentLast) {
   poses.add("arm", 1, 2);
   poses.last().samples[0].stamp_ns = test::kStart - 3 * test::kTick;
   poses.last().samples[1].stamp_ns = test::kStart - 7 * test::kTick;
-  const Run run(test::two_balls(), std::vector<std::int64_t>(1'200, 0), poses);
+  const RunOf run(test::two_balls(), std::vector<std::int64_t>(1'200, 0), poses);
   const auto age = [&](std::size_t tick) {
     return std::ranges::max(run.sink.starts[tick].ages_ns);
   };
