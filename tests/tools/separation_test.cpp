@@ -128,7 +128,9 @@ TEST(SeparationOverDds, CountsTheMeasuredDelayAndIsFailSafeBeyondTheLimitAsARepl
   for (const Kept& message : messages_of(run)) {
     if (message.kind == TopicKind::kDistances) {
       delay = decoded<clearance_msg_Distances>(message)->report_delay_ns;
-      if (ticks++ == 0) EXPECT_EQ(delay, TickTime::kNotMeasured) << "nothing was published yet";
+      if (ticks++ == 0) {
+        EXPECT_EQ(delay, TickTime::kNotMeasured) << "nothing was published yet";
+      }
     }
     if (message.kind != TopicKind::kSeparation) continue;
     const auto separation = decoded<clearance_msg_Separation>(message);
