@@ -8,6 +8,7 @@
 #include <cctype>
 #include <cmath>
 #include <cstdio>
+#include <filesystem>
 #include <map>
 #include <optional>
 #include <string>
@@ -21,6 +22,7 @@
 #include "monitor/app/log.hpp"
 #include "monitor/app/log_line.hpp"
 #include "monitor/app/options.hpp"
+#include "monitor/app/output_file.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/app/stop_signal.hpp"
@@ -73,6 +75,7 @@ struct Arguments {
   double seconds = 0.0;
   SimulatedRobotOptions robot;
   bool latency = false;
+  std::filesystem::path histograms;  // empty: none
   SimulatedCameraOptions cameras;
   std::string camera_size = "320x240";
   std::vector<std::string> people;  // their paths
@@ -168,6 +171,8 @@ void add_options(CommandLine& line, Arguments& arguments) {
        shown()},
       {"--latency", &arguments.latency,
        "Read the reports too, and print the delay from a batch to the first report that uses it"},
+      {"--histograms", &arguments.histograms, "Write these delays to this JSON file",
+       needing("--latency")},
   });
   add_camera_options(line, arguments);
   line.add({{"--priority", &arguments.priority, "Run under SCHED_FIFO", whole_number_in(1, 99)}});
@@ -298,7 +303,7 @@ int run_robot(const Cell& cell, const Arguments& arguments, JointMotion motion,
   SimulationTime time;
   SimulatedRobot robot(cell, connection, arguments.robot, motion);
   std::optional<LatencyMeter> latency;
-  if (arguments.latency) latency.emplace(connection);
+  if (arguments.latency) latency.emplace(connection, arguments.priority);
   log_text(LogLevel::kInfo,
            fmt::format("source '{}' sends {} at {} Hz on {}", arguments.robot.source,
                        inputs_of(robot), arguments.rate_hz, connection.where()));
@@ -319,7 +324,10 @@ int run_robot(const Cell& cell, const Arguments& arguments, JointMotion motion,
   print(stdout, "wake-up  {}\n", percentiles(lateness));
   cameras.tell();
   if (latency) latency->tell(connection.where());
-  return kOk;
+  const bool is_written =
+      arguments.histograms.empty() ||
+      write_file("clearance-robot", arguments.histograms, latency->histograms());
+  return is_written ? kOk : kFailed;
 }
 
 int run(int argc, char** argv, StopSignal& signal) {

@@ -26,6 +26,7 @@ class SeparationReader {
  private:
   void read_human(Separation& separation);
   void read_robot(Separation& separation);
+  void read_reaction(Separation& separation);
   double length_or(const YamlNode* node, const std::string& what, double otherwise) const {
     return node == nullptr ? otherwise
                            : quantities_.length(*node, what, kNotNegative).value_or(otherwise);
@@ -86,8 +87,7 @@ void SeparationReader::read_robot(Separation& separation) {
     separation.robot_acceleration =
         quantities_.acceleration(*acceleration, "the robot's acceleration").value_or(0.0);
   }
-  separation.reaction_time_ns =
-      required_time("reaction_time_ms", "the time until the robot brakes");
+  read_reaction(separation);
   separation.stopping_time_ns = required_time("stopping_time_ms", "the time of braking");
   separation.stopping_distance = length_or(map_.required("stopping_distance"),
                                            "the way that the robot goes while it brakes", 0.0);
@@ -95,6 +95,25 @@ void SeparationReader::read_robot(Separation& separation) {
     separation.stopping_speed =
         quantities_.speed(*speed, "the speed from which the robot was stopped").value_or(0.0);
   }
+}
+
+// All of T_r is stated, or the part that only the cell's owner can measure.
+void SeparationReader::read_reaction(Separation& separation) {
+  const YamlNode* controller = map_.optional("controller_time_ms");
+  if (controller == nullptr) {
+    separation.reaction_time_ns =
+        required_time("reaction_time_ms", "the time until the robot brakes");
+    return;
+  }
+  separation.reaction_is_measured = true;
+  separation.reaction_time_ns =
+      quantities_.milliseconds(*controller, "the time of network and controller", kNotNegative)
+          .value_or(0);
+  if (map_.optional("reaction_time_ms") == nullptr) return;
+  quantities_.diagnostics().add(
+      *controller,
+      "found controller_time_ms beside reaction_time_ms; expected one of them: with "
+      "controller_time_ms, the daemon's part is measured");
 }
 
 Separation SeparationReader::read() {

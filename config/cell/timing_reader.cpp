@@ -52,6 +52,10 @@ TimingPlaces read_timing(MapReader& map, const Quantities& quantities, Scene& sc
         quantities.milliseconds(*limit, "how far ahead of now a stamp may be", kNotNegative)
             .value_or(scene.future_limit_ns);
   }
+  if (const YamlNode* limit = map.optional("response_limit_ms")) {
+    scene.response_limit_ns = quantities.milliseconds(*limit, "the longest response", kPositive)
+                                  .value_or(scene.response_limit_ns);
+  }
   if (const YamlNode* gradients = map.optional("gradients"))
     scene.gradients = read_flag(*gradients, diagnostics).value_or(false);
   return places;

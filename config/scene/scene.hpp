@@ -113,7 +113,10 @@ struct Scene {
   bool evaluate_all = false;    // every pair in every tick, as if all were published; as far as the
                               // budget allows. For tables and measurements: cells do not ask for it
   std::int64_t future_limit_ns = 5'000'000;  // a stamp farther than this ahead of now is refused
-  double added_shape_error = 0.0;            // stated, m; of shapes that are added later
+  // An input is unknown while its age and the time that reports take exceed this.
+  static constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max();
+  std::int64_t response_limit_ns = kNoLimit;
+  double added_shape_error = 0.0;  // stated, m; of shapes that are added later
   PlaceError attached_error = {};  // stated; of what is attached and states none of its own
   bool gradients = false;          // of published pairs by the joints of robots, in every report
   std::vector<Object> objects;

@@ -19,8 +19,11 @@ struct Separation {
   double human_acceleration = 0.0;
   // The robot's speed where it is not known, m/s; infinity: as Object::max_speed.
   double robot_speed = kInfinity;
-  double robot_acceleration = 0.0;    // m/s2, until the brake begins to act
-  std::int64_t reaction_time_ns = 0;  // T_r: from the tick until then
+  double robot_acceleration = 0.0;  // m/s2, until the brake begins to act
+  // T_r: from the tick until then. Measured: from when the report is handed to DDS; until then,
+  // TickTime::report_delay_ns counts.
+  std::int64_t reaction_time_ns = 0;
+  bool reaction_is_measured = false;
   std::int64_t stopping_time_ns = 0;  // T_s: from then until the robot stands
   double stopping_distance = 0.0;     // B, m: its path meanwhile
   // The robot's speed at which T_s and B were measured, m/s. They then scale with its present

@@ -2,7 +2,9 @@
 // are recognised.
 #include "monitor/app/output_file.hpp"
 
+#include <cerrno>
 #include <cstdio>
+#include <cstring>
 #include <system_error>
 
 #include "monitor/app/print.hpp"
@@ -57,6 +59,15 @@ std::optional<std::filesystem::path> free_name(const char* program,
     return std::nullopt;
   }
   return force ? file : first_free(file);
+}
+
+bool write_file(const char* program, const std::filesystem::path& file, std::string_view text) {
+  std::FILE* const out = std::fopen(file.c_str(), "w");
+  const bool is_whole =
+      out != nullptr && std::fwrite(text.data(), 1, text.size(), out) == text.size();
+  if ((out == nullptr || std::fclose(out) == 0) && is_whole) return true;
+  print(stderr, "{}: {} cannot be written: {}\n", program, file.string(), std::strerror(errno));
+  return false;
 }
 
 // Devices and pipes (/dev/stdout) are left alone.

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <initializer_list>
 #include <optional>
+#include <string_view>
 
 namespace clearance {
 
@@ -22,6 +23,11 @@ namespace clearance {
 [[nodiscard]] std::optional<std::filesystem::path> free_name(const char* program,
                                                              const std::filesystem::path& file,
                                                              bool force);
+
+// Writes the text into the file, in place of what was there. Returns false and says so when it
+// cannot be written.
+[[nodiscard]] bool write_file(const char* program, const std::filesystem::path& file,
+                              std::string_view text);
 
 // Removes an unfinished file, if it is a regular one, and says so.
 void remove_unfinished(const char* program, const std::filesystem::path& file);

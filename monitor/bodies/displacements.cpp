@@ -26,9 +26,11 @@ std::int64_t stamp_of(const InputRecord& input) noexcept {
 }
 
 // The last time at which the pose in use is not late.
-std::int64_t in_time_until(const TrackedObject& state, const Object& object) noexcept {
+std::int64_t in_time_until(const TrackedObject& state, const Object& object,
+                           std::int64_t response_left_ns) noexcept {
   const std::int64_t stamp = stamp_of(state.input);
-  return stamp == PoseStamps::kNone ? PoseStamps::kNone : less(stamp, -object.age_limit_ns);
+  const std::int64_t most_ns = std::min(object.age_limit_ns, response_left_ns);
+  return stamp == PoseStamps::kNone ? PoseStamps::kNone : less(stamp, -most_ns);
 }
 
 }  // namespace
@@ -46,6 +48,7 @@ void Displacer::displace(Inputs& inputs) noexcept {
   const std::int64_t now_ns = inputs.time.now_ns;
   const std::size_t count = inputs.objects.size(), first_link = inputs.robots.first_link();
   displaced_.changed.clear();
+  displaced_.response_is_late = false;
   visited_.clear();
   const bool first = std::exchange(first_, false);
   if (first) {
@@ -60,7 +63,7 @@ void Displacer::displace(Inputs& inputs) noexcept {
     next = seen + 1;
   }
   inputs.visits.each_due(next, first_link, now_ns, visit_due);
-  if (first_link < count) inputs.robots.place(now_ns, inputs.objects);
+  if (first_link < count) inputs.robots.place(now_ns, inputs.objects, inputs.response_left_ns);
   inputs.visits.each_due(first_link, count, now_ns, visit_due);
   visit_seen(first, inputs);
   // A loop for each step, so that no object waits for the roots and quotients of the one before it.
@@ -93,7 +96,11 @@ void Displacer::visit(std::uint32_t i, bool first, Inputs& inputs, bool is_lost)
   TrackedObject& object = inputs.objects[i];
   const bool was_late = object.input.late;
   const double might_have_moved = object.may_have_moved;
-  advance(scene_.objects[i], inputs.time.now_ns, object, is_lost);
+  const std::int64_t now_ns = inputs.time.now_ns;
+  advance(scene_.objects[i], now_ns, object, is_lost, inputs.response_left_ns);
+  if (!object.follows_joints &&
+      object.input.response_is_late(now_ns, scene_.objects[i].age_limit_ns))
+    displaced_.response_is_late = true;
   const bool changes =
       object.moved || object.input.late != was_late || object.may_have_moved != might_have_moved;
   if (changes && !first) displaced_.changed.push_back(i);
@@ -109,7 +116,9 @@ void Displacer::summarise(Inputs& inputs) noexcept {
     if (is_lost != is_lost_[i]) lost_ = is_lost ? lost_ + 1 : lost_ - 1;
     is_lost_[i] = is_lost;
     inputs.stamps.set(i, stamp_of(object.input));
-    if (object.at_rest()) inputs.visits.rest_until(i, in_time_until(object, scene_.objects[i]));
+    if (object.at_rest())
+      inputs.visits.rest_until(i,
+                               in_time_until(object, scene_.objects[i], inputs.response_left_ns));
     if (!object.known()) continue;
     unobserved.add(object.may_have_moved);
     // An unbounded displacement counts as 0 here, since no pair of such an object is culled. A

@@ -22,6 +22,7 @@ struct Displacements {
   double most_unobserved = 0.0, most_displaced = 0.0;
   // Newest and oldest stamp of the moving objects' poses in use; 0: none is in use.
   std::int64_t newest_pose_ns = 0, oldest_pose_ns = 0;
+  bool response_is_late = false;  // of an object, as InputRecord says
 };
 
 // The stage. It visits the objects that VisitTimes says are due, and keeps what the summary needs

@@ -1,5 +1,6 @@
 #include "monitor/bodies/ingest.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <span>
 #include <string_view>
@@ -52,7 +53,9 @@ std::optional<Reject> take(const PoseSample& sample, const Scene& scene, Inputs&
   const std::int64_t stamp_ns = tick_stamp(sample, age_limit_ns, scene, inputs);
   const SampleLimits limits{inputs.time.now_ns, scene.future_limit_ns};
   if (take_at_rest(age_limit_ns, sample, stamp_ns, limits, state)) {
-    inputs.visits.rest_on_until(sample.object, less(stamp_ns, -age_limit_ns), limits.now_ns);
+    inputs.visits.rest_on_until(sample.object,
+                                less(stamp_ns, -std::min(age_limit_ns, inputs.response_left_ns)),
+                                limits.now_ns);
     inputs.stamps.set(sample.object, stamp_ns);
     return std::nullopt;
   }
@@ -116,6 +119,12 @@ void take_all(std::span<const Sample> samples, const Scene& scene, Inputs& input
   }
 }
 
+// Negative: no value is young enough.
+std::int64_t response_left(std::int64_t limit_ns, std::int64_t report_delay_ns) noexcept {
+  if (limit_ns == Scene::kNoLimit) return limit_ns;
+  return report_delay_ns < 0 ? -1 : std::max<std::int64_t>(-1, limit_ns - report_delay_ns);
+}
+
 // For a tick that does not know how much time has passed.
 void forget_ages(const TickTime& time, Inputs& inputs) noexcept {
   for (SourceClock& source : inputs.sources) source.forget();
@@ -164,6 +173,9 @@ void ingest(std::span<const PoseSample> samples, std::span<const JointSample> jo
   ++inputs.cycle;
   if (time.now_ns < inputs.time.now_ns) forget_ages(time, inputs);
   inputs.time = time;
+  const std::int64_t left_ns = response_left(scene.response_limit_ns, time.report_delay_ns);
+  if (left_ns < inputs.response_left_ns) inputs.visits.visit_all();  // objects that rest, too
+  inputs.response_left_ns = left_ns;
   take_all(joints, scene, inputs);
   take_all(samples, scene, inputs);
 }

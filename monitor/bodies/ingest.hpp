@@ -30,6 +30,8 @@ struct CarriedSensor {
 struct Inputs {
   std::uint64_t cycle = 0;  // counts ticks from 1
   TickTime time{std::numeric_limits<std::int64_t>::min()};
+  // The age from which on the response to a value comes too late (Scene::response_limit_ns).
+  std::int64_t response_left_ns = kAnyAge;
   LargeColumn<TrackedObject> objects;       // same order as Scene::objects
   std::vector<std::int64_t> age_limits_ns;  // Object::age_limit_ns, side by side
   VisitTimes visits;  // a sample makes its object due, unless the object is at rest

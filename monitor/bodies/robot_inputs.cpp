@@ -156,11 +156,15 @@ void RobotInputs::restore(StateReader& in) noexcept {
   for (const SeenCount& seen : seen_) in.expect(are_flags(seen.denied));
 }
 
-void RobotInputs::place(std::int64_t now_ns, std::span<TrackedObject> objects) noexcept {
+void RobotInputs::place(std::int64_t now_ns, std::span<TrackedObject> objects,
+                        std::int64_t response_left_ns) noexcept {
+  response_is_late_ = false;
   if (std::ranges::find(heard_, true) == heard_.end()) return;
   for (std::size_t i = 0; i < variables_.size(); ++i) {
     if (scene_.variables[i].is_held()) variables_[i].input.stamp_ns = now_ns;
-    advance(scene_.variables[i], now_ns, variables_[i]);
+    advance(scene_.variables[i], now_ns, variables_[i], response_left_ns);
+    if (variables_[i].input.response_is_late(now_ns, scene_.variables[i].age_limit_ns))
+      response_is_late_ = true;
   }
   for (std::size_t robot = 0; robot < bases_.size(); ++robot) {
     const RobotBase& base = scene_.robots[robot].base;
@@ -178,9 +182,9 @@ void RobotInputs::place(std::int64_t now_ns, std::span<TrackedObject> objects) n
       if (object.fixed || state.absent) continue;
       const LinkState& placed = kinematics_.links(robot)[link];
       if (denied) {
-        follow(denied_state(placed), object, now_ns, state);
+        follow(denied_state(placed), object, now_ns, state, response_left_ns);
       } else {
-        follow(placed, object, now_ns, state);
+        follow(placed, object, now_ns, state, response_left_ns);
       }
     }
   }

@@ -71,7 +71,10 @@ class RobotInputs {
 
   // Ends the tick's input and places the links of all robots with joint positions. The objects on
   // which robots stand must already be advanced.
-  void place(std::int64_t now_ns, std::span<TrackedObject> objects) noexcept;
+  void place(std::int64_t now_ns, std::span<TrackedObject> objects,
+             std::int64_t response_left_ns = kAnyAge) noexcept;
+  // After place(): of a position, as InputRecord says.
+  [[nodiscard]] bool response_is_late() const noexcept { return response_is_late_; }
 
  private:
   const Scene& scene_;
@@ -82,6 +85,7 @@ class RobotInputs {
   std::vector<LinkState> bases_;  // by robot
   std::vector<SeenCount> seen_;   // by sensor and robot
   ForwardKinematics kinematics_;
+  bool response_is_late_ = false;
 };
 
 }  // namespace clearance

@@ -210,14 +210,16 @@ bool may_be_anywhere(const Object& object, std::int64_t now_ns,
          rounded_up(object.max_speed * seconds(age_ns)) > state.bounding_radius;
 }
 
-void follow(const LinkState& link, const Object& object, std::int64_t now_ns,
-            TrackedObject& state) noexcept {
+void follow(const LinkState& link, const Object& object, std::int64_t now_ns, TrackedObject& state,
+            std::int64_t response_left_ns) noexcept {
   const bool known = link.known && link.error(state.bounding_radius) <= object.pose_error;
+  const bool answered = elapsed(link.stamp_ns, now_ns) <= response_left_ns;
   state.follows_joints = true;
-  state.joints_late = !known || link.late;
-  state.unobserved_by_joints = known ? link.may_have_moved(state.bounding_radius) : kInfinity;
+  state.joints_late = !known || link.late || !answered;
+  state.unobserved_by_joints =
+      known && answered ? link.may_have_moved(state.bounding_radius) : kInfinity;
   if (!known) return;
-  if (link.late && !link.contradicted && object.max_speed < kInfinity) {
+  if (link.late && answered && !link.contradicted && object.max_speed < kInfinity) {
     const double age_s = seconds(elapsed(link.stamp_ns, now_ns));
     state.unobserved_by_joints =
         std::min(state.unobserved_by_joints, rounded_up(object.max_speed * age_s));
@@ -237,8 +239,8 @@ void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept {
   state.repetition.add(false, now_ns);
 }
 
-void advance(const Object& object, std::int64_t now_ns, TrackedObject& state,
-             bool is_lost) noexcept {
+void advance(const Object& object, std::int64_t now_ns, TrackedObject& state, bool is_lost,
+             std::int64_t response_left_ns) noexcept {
   InputRecord& input = state.input;
   if (object.fixed || !input.has_value) return;
   const double unobserved_before = state.pose_last_tick_known ? state.may_have_moved : kInfinity;
@@ -253,7 +255,7 @@ void advance(const Object& object, std::int64_t now_ns, TrackedObject& state,
   }
   state.pose_last_tick_known = true;
 
-  input.advance(now_ns, object.age_limit_ns);
+  input.advance(now_ns, object.age_limit_ns, response_left_ns);
   if (is_lost) input.contradicted = input.late = true;
   if (state.follows_joints) {
     input.contradicted = state.joints_contradicted;
@@ -261,8 +263,8 @@ void advance(const Object& object, std::int64_t now_ns, TrackedObject& state,
     state.may_have_moved = state.unobserved_by_joints;
   } else {
     const bool may_move = input.late || (object.is_seen() && object.max_speed < kInfinity);
-    const bool is_anywhere =
-        input.contradicted || (object.is_seen() && may_be_anywhere(object, now_ns, state));
+    const bool is_anywhere = input.contradicted || input.unanswered ||
+                             (object.is_seen() && may_be_anywhere(object, now_ns, state));
     state.may_have_moved = is_anywhere ? kInfinity
                            : may_move ? rounded_up(object.max_speed * seconds(input.age_ns(now_ns)))
                                       : 0.0;

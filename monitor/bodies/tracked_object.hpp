@@ -134,16 +134,17 @@ struct alignas(64) TrackedObject {
 // and no longer is may be anywhere. The same applies if the rounding error of its pose exceeds
 // Object::pose_error. An object that states max_speed follows the pose of another object, without
 // joints in between: it is then within max_speed times the age of that pose.
-void follow(const LinkState& link, const Object& object, std::int64_t now_ns,
-            TrackedObject& state) noexcept;
+void follow(const LinkState& link, const Object& object, std::int64_t now_ns, TrackedObject& state,
+            std::int64_t response_left_ns = kAnyAge) noexcept;
 
 // The age of the pose in use is not known any more: it is late until the next one comes.
 void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept;
 
 // Ends the tick's input: sets the motion since the last tick, the age and the lateness. `is_lost`:
-// what carries this sensor is not known, which counts as a contradiction.
-void advance(const Object& object, std::int64_t now_ns, TrackedObject& state,
-             bool is_lost = false) noexcept;
+// what carries this sensor is not known, which counts as a contradiction. An object whose pose is
+// older than `response_left_ns` may be anywhere.
+void advance(const Object& object, std::int64_t now_ns, TrackedObject& state, bool is_lost = false,
+             std::int64_t response_left_ns = kAnyAge) noexcept;
 
 // Accumulates this tick's motion. `bounding_radius` is that of the object around its
 // origin, m.

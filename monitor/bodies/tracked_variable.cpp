@@ -143,10 +143,11 @@ void forget_age(std::int64_t now_ns, TrackedVariable& state) noexcept {
   state.repetition.add(false, now_ns);
 }
 
-void advance(const JointVariable& variable, std::int64_t now_ns, TrackedVariable& state) noexcept {
+void advance(const JointVariable& variable, std::int64_t now_ns, TrackedVariable& state,
+             std::int64_t response_left_ns) noexcept {
   InputRecord& input = state.input;
   if (!input.has_value) return;
-  input.advance(now_ns, variable.age_limit_ns);
+  input.advance(now_ns, variable.age_limit_ns, response_left_ns);
   state.may_have_moved = 0.0;
   if (!input.late) return;
   // If the measured velocity exceeds the velocity limit, the limit does not bound the joint.

@@ -47,6 +47,7 @@ struct TrackedVariable {
 void forget_age(std::int64_t now_ns, TrackedVariable& state) noexcept;
 
 // Ends the tick's input: sets age, lateness, and the bound of the unobserved motion.
-void advance(const JointVariable& variable, std::int64_t now_ns, TrackedVariable& state) noexcept;
+void advance(const JointVariable& variable, std::int64_t now_ns, TrackedVariable& state,
+             std::int64_t response_left_ns = kAnyAge) noexcept;
 
 }  // namespace clearance

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdlib>
 #include <cstring>
+#include <functional>
 #include <map>
 #include <span>
 #include <string>
@@ -24,11 +25,11 @@ constexpr std::array kLargest = {
     &Message::wakeup_p50_us,      &Message::wakeup_p999_us,      &Message::wakeup_max_us,
     &Message::response_p50_us,    &Message::response_p999_us,    &Message::response_max_us,
     &Message::tick_second_max_us, &Message::wakeup_second_max_us};
-constexpr std::array kSums = {&Message::clock_steps,     &Message::overruns,
-                              &Message::skipped_cycles,  &Message::batches,
-                              &Message::lost_batches,    &Message::undecodable_samples,
-                              &Message::dropped_reports, &Message::other_writers,
-                              &Message::foreign_reports, &Message::recording_missing};
+constexpr std::array kSums = {
+    &Message::clock_steps,       &Message::overruns,      &Message::skipped_cycles,
+    &Message::batches,           &Message::lost_batches,  &Message::undecodable_samples,
+    &Message::dropped_reports,   &Message::other_writers, &Message::foreign_reports,
+    &Message::recording_missing, &Message::late_responses};
 
 constexpr std::array kPartnerSums = {
     &clearance_msg_PartnerHealth::compared, &clearance_msg_PartnerHealth::different,
@@ -121,6 +122,24 @@ void join_notes(Views views, Message& out) {
     to = note;
     to.input = dds_string_dup(note.input);
   }
+}
+
+// Every share hears the same inputs: the slowest response counts.
+void join_responses(Views views, Message& out) {
+  std::map<std::string, clearance_msg_InputResponse> responses;
+  for_all(views, &Message::responses, [&](const clearance_msg_InputResponse& of) {
+    const auto [at, is_new] = responses.emplace(of.input, of);
+    at->second.p50_us = std::max(at->second.p50_us, of.p50_us);
+    at->second.max_us = std::max(at->second.max_us, of.max_us);
+  });
+  std::vector<clearance_msg_InputResponse> sorted;
+  for (const auto& [input, of] : responses) sorted.push_back(of);
+  std::ranges::stable_sort(sorted, std::ranges::greater(), &clearance_msg_InputResponse::max_us);
+  sorted.resize(std::min<std::size_t>(sorted.size(), 32));
+  reserve_sequence(out.responses, sorted.size());
+  for (const clearance_msg_InputResponse& of : sorted)
+    out.responses._buffer[out.responses._length++] = {dds_string_dup(of.input), of.p50_us,
+                                                      of.max_us};
 }
 
 // A share that has no sensor's pairs does not read it: the picture with the most rays counts.
@@ -225,6 +244,7 @@ void join_health(Views views, std::span<const HealthCounts* const> counts,
   join_ages(views, &Message::joints, &clearance_msg_JointAge::variable, out);
   join_sources(views, out);
   join_notes(views, out);
+  join_responses(views, out);
   join_witnesses(views, out);
 }
 

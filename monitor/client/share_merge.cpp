@@ -28,10 +28,10 @@ constexpr std::string_view kJoined[] = {
     "daemon", "partner", "lineage", "checksum", "state_checksum", "delivery_checksum",
     "changes_since", "cycle", "scene_revision",
     // join_reports, add_counts, join_pairs and join_sources
-    "now_ns", "publish_ns", "clock_offset_ns", "newest_pose_ns", "oldest_pose_ns", "pairs_total",
-    "unknown", "stale", "evaluated", "carried", "queries", "oldest_evaluation_cycles",
-    "minimum_known", "minimum_certified", "minimum", "lower_all", "swept_lower_all", "pairs",
-    "contacts", "hidden", "sources", "active_zones"};
+    "now_ns", "publish_ns", "clock_offset_ns", "report_delay_ns", "newest_pose_ns",
+    "oldest_pose_ns", "pairs_total", "unknown", "stale", "evaluated", "carried", "queries",
+    "oldest_evaluation_cycles", "minimum_known", "minimum_certified", "minimum", "lower_all",
+    "swept_lower_all", "pairs", "contacts", "hidden", "sources", "active_zones"};
 constexpr bool joins_all() {
   bool all = true;
   FieldsOf<clearance_msg_Distances>::for_each([&all](Field field) {
@@ -87,6 +87,8 @@ void add_counts(const clearance_msg_Distances& report, clearance_msg_Distances& 
   out.queries += report.queries;
   out.oldest_evaluation_cycles =
       std::max(out.oldest_evaluation_cycles, report.oldest_evaluation_cycles);
+  const bool measured = out.report_delay_ns >= 0 && report.report_delay_ns >= 0;
+  out.report_delay_ns = measured ? std::max(out.report_delay_ns, report.report_delay_ns) : -1;
   out.lower_all = std::min(out.lower_all, report.lower_all);
   out.swept_lower_all = std::min(out.swept_lower_all, report.swept_lower_all);
   out.newest_pose_ns = std::max(out.newest_pose_ns, report.newest_pose_ns);
@@ -232,7 +234,7 @@ void join_reports(const ShareMap& map, std::span<const ShareView> views,
   begin(out.active_zones, map.zones().size());  // which the caller fills
   join_sources(views, out);
   out.scene_revision = map.revision();
-  out.now_ns = out.publish_ns = out.clock_offset_ns = 0;
+  out.now_ns = out.publish_ns = out.clock_offset_ns = out.report_delay_ns = 0;
   out.newest_pose_ns = out.oldest_pose_ns = 0;
   out.minimum_known = false;
   out.minimum = unknown_pair(0);

@@ -57,9 +57,10 @@ Participant join(const DaemonOptions& options) {
 
 std::unique_ptr<Recording> open_recording(const std::shared_ptr<const Cell>& cell,
                                           const DaemonOptions& options, PoseReader& poses,
-                                          RecordingHealth& health) {
+                                          RecordingHealth& health, const ResponseTimes& responses) {
   if (options.record_file.empty()) return nullptr;
-  return std::make_unique<Recording>(options.record_file, options.recording, cell, poses, health);
+  return std::make_unique<Recording>(options.record_file, options.recording, cell, poses, health,
+                                     &responses);
 }
 
 // ROS 2 knows the default partition only.
@@ -94,7 +95,8 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
       messages_(cell, participant_),
       reports_(cell, participant_, *now_.queue, poses_, recording_health_, options.on_health,
                &messages_, identity_, partner_ ? &partner_->port : nullptr),
-      recording_(open_recording(now_.cell, options, poses_, recording_health_)),
+      recording_(
+          open_recording(now_.cell, options, poses_, recording_health_, reports_.responses())),
       revision_(cell.scene.revision) {
   const TickLoopOptions loop{
       .max_ticks = options.max_ticks,
@@ -143,7 +145,8 @@ Daemon::CellOutputs Daemon::parts_of(std::shared_ptr<const Cell> cell) {
   if (writes_ros(*parts.cell)) {
     const auto health = [this, &scene = parts.cell->scene,
                          queue = parts.queue.get()](const LoopStatistics& statistics) {
-      return make_health(scene, statistics, poses_, queue->dropped_reports(), recording_health_);
+      return make_health(scene, statistics, poses_, queue->dropped_reports(), recording_health_,
+                         &reports_.responses());
     };
     parts.ros = std::make_unique<RosWriter>(*parts.cell, participant_, health, leads());
   }
@@ -289,10 +292,18 @@ std::string Daemon::summary() const {
       dropped_before_ + now_.queue->dropped_reports() + reports_.failed_writes();
   const LoopStatistics& figures = loop_->statistics();
   const bool is_before = is_less(least_before_, figures.minimum);
-  return run_summary(figures, seconds_, dropped) +
+  return run_summary(figures, reports_.responses(), seconds_, dropped) +
          minimum_text(is_before ? least_before_ : figures.minimum,
                       is_before ? least_cell_->scene : now_.cell->scene) +
          (recording_ ? recording_->summary() : "");
+}
+
+std::string Daemon::histograms() const {
+  const LoopStatistics& figures = loop_->statistics();
+  return histograms_json({{"wakeup", figures.wakeup},
+                          {"tick", figures.tick},
+                          {"report", reports_.responses().delays()},
+                          {"response", reports_.responses().slowest()}});
 }
 
 bool Daemon::recording_complete() const noexcept { return !recording_ || recording_->complete(); }

@@ -67,6 +67,8 @@ class Daemon : private CellParts {
   [[nodiscard]] bool yielded() const noexcept { return reports_.yields(); }
   // After run(): a summary for a person.
   [[nodiscard]] std::string summary() const;
+  // After run(): of wake-ups, ticks, reports and responses, as histograms_json() writes them.
+  [[nodiscard]] std::string histograms() const;
   // After run(): true when nothing was to be recorded, or when the file holds all of it.
   [[nodiscard]] bool recording_complete() const noexcept;
   // After run(): true when the recording thread still waits for the disk. The program must then end

@@ -61,7 +61,8 @@ struct Arguments {
   std::vector<std::string> commands;   // clients in addition to the cell's
   std::vector<std::string> questions;  // likewise
   RosTrajectories trajectories{.topics = {}, .margins = {}};
-  std::filesystem::path metrics;  // a socket; empty: none
+  std::filesystem::path metrics;     // a socket; empty: none
+  std::filesystem::path histograms;  // a file; empty: none
   std::int64_t ahead_us = 0;
   DaemonOptions daemon;
 };
@@ -135,6 +136,8 @@ void add_options(CommandLine& line, Arguments& arguments) {
   line.add({
       {"--metrics", &arguments.metrics,
        "Answer GET /metrics on this Unix socket, in the text format of Prometheus"},
+      {"--histograms", &arguments.histograms,
+       "At the end, write how long wake-ups, ticks, reports and responses took to this JSON file"},
       {"--ticks", &daemon.max_ticks, "Stop after this many ticks; 0: never",
        whole_number(0, 1'000'000'000'000)},
       {"--priority", &daemon.fifo_priority,
@@ -259,13 +262,15 @@ int run_daemon(const Cell& cell, Arguments& arguments, StopSignal& signal) {
   Daemon daemon(cell, arguments.daemon);
   daemon.run(signal);
   write_text(stdout, daemon.summary(), Patience::kBrief);
+  const bool is_written = arguments.histograms.empty() ||
+                          write_file("clearanced", arguments.histograms, daemon.histograms());
   if (daemon.recording_hangs()) {
     drain_log();
     std::_Exit(kIncomplete);
   }
-  const int status = daemon.yielded()              ? kDdsFailed
-                     : daemon.recording_complete() ? kOk
-                                                   : kIncomplete;
+  const int status = daemon.yielded()                            ? kDdsFailed
+                     : daemon.recording_complete() && is_written ? kOk
+                                                                 : kIncomplete;
   if (daemon.still_reads()) {
     drain_log();
     std::_Exit(status);

@@ -83,7 +83,8 @@ Recording::Part::Part(std::shared_ptr<const Cell> the_cell)
 
 // The file and its catalogue are written before the first tick, so that errors show at the start.
 Recording::Recording(const std::filesystem::path& file, const RecordingOptions& options,
-                     std::shared_ptr<const Cell> cell, PoseReader& poses, RecordingHealth& health)
+                     std::shared_ptr<const Cell> cell, PoseReader& poses, RecordingHealth& health,
+                     const ResponseTimes* responses)
     : file_(file.string()),
       by_event_(options.events.any()),
       files_(by_event_ ? 0 : 1),
@@ -91,6 +92,7 @@ Recording::Recording(const std::filesystem::path& file, const RecordingOptions& 
       poses_(poses),
       built_(poses.keep_frames()),
       health_(health),
+      responses_(responses),
       recorder_(file, *cell, cell->ros.use_sim_time ? 0 : SystemClock().realtime_ns(),
                 capped(options, file, *cell)) {
   if (!recorder_.ok()) throw RecordError(fmt::format("recording: {}", recorder_.error()));
@@ -212,7 +214,8 @@ void Recording::record_all(Part& part) {
     tell_of_new_files();
   }
   while (const LoopStatistics* statistics = queue.statistics().front()) {
-    recorder_.health(*make_health(part.cell->scene, *statistics, poses_, dropped().first, health_));
+    recorder_.health(
+        *make_health(part.cell->scene, *statistics, poses_, dropped().first, health_, responses_));
     queue.statistics().pop();
     recorder_.check();
     count(0);

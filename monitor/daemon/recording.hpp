@@ -18,6 +18,7 @@
 #include "monitor/daemon/frame_uses.hpp"
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/loop/report_queue.hpp"
+#include "monitor/loop/response_times.hpp"
 #include "monitor/publish/recording_health.hpp"
 #include "monitor/recording/recorder.hpp"
 #include "monitor/wire/partner_state.hpp"
@@ -39,7 +40,8 @@ class Recording {
   // Throws RecordError when the file cannot be made, is no regular file, or exists and may not be
   // overwritten.
   Recording(const std::filesystem::path& file, const RecordingOptions& options,
-            std::shared_ptr<const Cell> cell, PoseReader& poses, RecordingHealth& health);
+            std::shared_ptr<const Cell> cell, PoseReader& poses, RecordingHealth& health,
+            const ResponseTimes* responses = nullptr);
   ~Recording();
   Recording(const Recording&) = delete;
   Recording& operator=(const Recording&) = delete;
@@ -111,6 +113,7 @@ class Recording {
   BuiltFrames* built_;  // null: the cell has no sensors
   CdrEncoder encoder_;
   RecordingHealth& health_;
+  const ResponseTimes* const responses_;  // null: not known
   // States that the loop went on from, or may go on from, by lineage: the last kMostStates.
   std::deque<std::pair<std::uint64_t, std::vector<std::byte>>> states_;
   mutable std::mutex mutex_;  // guards the one above, and the next two

@@ -110,6 +110,7 @@ void PartnerPort::write_notices() {
       out.cycle = notice->cycle;
       out.now_ns = notice->time.now_ns;
       out.clock_offset_ns = notice->time.clock_offset_ns;
+      out.report_delay_ns = notice->time.report_delay_ns;
       out.due_ns = notice->due_ns + realtime_less_monotonic();
       out.told_late_ns = notice->told_late_ns;
       out.inputs._length = static_cast<std::uint32_t>(notice->count);
@@ -175,7 +176,7 @@ void PartnerPort::hear_notice(std::int64_t delay_ns) {
   notice_.since_cycle = in.since_cycle;
   notice_.becoming = in.becoming;
   notice_.cycle = in.cycle;
-  notice_.time = {in.now_ns, in.clock_offset_ns};
+  notice_.time = {in.now_ns, in.clock_offset_ns, in.report_delay_ns};
   notice_.due_ns = in.due_ns + delay_ns - realtime_less_monotonic();
   notice_.told_late_ns = in.told_late_ns;
   notice_.count = std::min<std::size_t>(in.inputs._length, kMostTickInputs);

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <optional>
 
 #include "monitor/inputs/contradiction.hpp"
@@ -21,10 +22,14 @@ struct SampleLimits {
   std::int64_t future_ns = 0;  // a stamp farther ahead of now is refused
 };
 
+// No response limit.
+inline constexpr std::int64_t kAnyAge = std::numeric_limits<std::int64_t>::max();
+
 struct InputRecord {
   bool has_value = false;     // a value is in use; always so for a fixed object
   bool late = false;          // the value is older than its limit, or contradicted
   bool contradicted = false;  // at the last advance()
+  bool unanswered = false;    // likewise: too old for an answer within Scene::response_limit_ns
   bool ages = true;           // false for a fixed object
   std::int64_t stamp_ns = 0;  // stamp of the value in use, in the tick's time
   Contradiction contradiction;
@@ -50,10 +55,18 @@ struct InputRecord {
     return ages ? elapsed(stamp_ns, now_ns) : 0;
   }
 
-  // Updates the lateness when all samples of the tick have been taken.
-  void advance(std::int64_t now_ns, std::int64_t age_limit_ns) noexcept {
+  // Updates the lateness when all samples of the tick have been taken. `response_left_ns` is the
+  // age from which on the response comes too late.
+  void advance(std::int64_t now_ns, std::int64_t age_limit_ns,
+               std::int64_t response_left_ns) noexcept {
     contradicted = contradiction.holds(now_ns);
-    late = contradicted || age_ns(now_ns) > age_limit_ns;
+    unanswered = age_ns(now_ns) > response_left_ns;
+    late = contradicted || unanswered || age_ns(now_ns) > age_limit_ns;
+  }
+  // The response alone is late at this tick: the value is not too old by its own limit.
+  [[nodiscard]] bool response_is_late(std::int64_t now_ns,
+                                      std::int64_t age_limit_ns) const noexcept {
+    return unanswered && !contradicted && age_ns(now_ns) <= age_limit_ns;
   }
 };
 

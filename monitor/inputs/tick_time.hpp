@@ -14,11 +14,16 @@ struct TickTime {
   // CLOCK_REALTIME minus `now_ns`. It becomes nonzero when this machine's clock is stepped
   // while the daemon runs.
   std::int64_t clock_offset_ns = 0;
+  // The longest that reports took lately from the time of their tick until they were handed to DDS,
+  // as this machine has measured it: the report of this tick is expected to take no longer. 0 where
+  // nothing is published; kNotMeasured.
+  std::int64_t report_delay_ns = 0;
+  static constexpr std::int64_t kNotMeasured = -1;
 
   TickTime() = default;
   // NOLINTNEXTLINE(google-explicit-constructor): a time on a clock that was never stepped
-  TickTime(std::int64_t now, std::int64_t clock_offset = 0) noexcept
-      : now_ns(now), clock_offset_ns(clock_offset) {}
+  TickTime(std::int64_t now, std::int64_t clock_offset = 0, std::int64_t report_delay = 0) noexcept
+      : now_ns(now), clock_offset_ns(clock_offset), report_delay_ns(report_delay) {}
 };
 
 }  // namespace clearance

@@ -83,6 +83,12 @@ inline constexpr LogLine<Text> kDiskHangs{
 
 inline constexpr LogLine<Text, std::int64_t> kPosesLate{
     "poses-late", kWarn, "the last usable pose of {} is {} ms old: its pairs are stale"};
+inline constexpr LogLine<Text, Text> kResponseLate{
+    "response-late", kWarn,
+    "{} in the last second had an input beyond response_limit_ms: what depends on it is unknown. "
+    "The slowest since the start: {}"};
+inline constexpr LogLine<> kResponseBack{"response-back", kInfo,
+                                         "the response is within response_limit_ms again"};
 inline constexpr LogLine<Text> kPosesContradict{
     "poses-contradict", kWarn,
     "poses of {} contradict each other or the cell: its pairs are unknown"};

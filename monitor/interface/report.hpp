@@ -278,6 +278,7 @@ struct Report {
   std::uint64_t cycle = 0;           // counts ticks from 1
   std::int64_t now_ns = 0;           // the time of the tick (TickTime)
   std::int64_t clock_offset_ns = 0;  // CLOCK_REALTIME less now_ns (TickTime)
+  std::int64_t report_delay_ns = 0;  // that the tick was told (TickTime); -1: not measured
   // Newest and oldest stamp of the moving objects' poses in use; 0: none is in use.
   std::int64_t newest_pose_ns = 0, oldest_pose_ns = 0;
   std::uint64_t scene_revision = 0;

@@ -203,6 +203,7 @@ struct DistanceFields {
   static constexpr void for_each(Visit&& visit, Report&... report) {
     TickFields::for_each(visit, report...);
     visit(Field{"clock_offset_ns"}, report.clock_offset_ns...);
+    visit(Field{"report_delay_ns"}, report.report_delay_ns...);
     visit(Field{"newest_pose_ns"}, report.newest_pose_ns...);
     visit(Field{"oldest_pose_ns"}, report.oldest_pose_ns...);
     visit(Field{"pairs_total"}, report.pairs_total...);

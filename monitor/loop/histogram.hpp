@@ -22,6 +22,12 @@ class Histogram {
   // The upper edge of the bin that ends the given share of all values (0.999: p99.9), never above
   // the maximum; 0 when empty.
   [[nodiscard]] std::int64_t percentile_ns(double share) const noexcept;
+  // Calls visit(upper edge in ns, count) for each bin that is not empty, in ascending order.
+  template <class Visit>
+  void each_bin(const Visit& visit) const {
+    for (std::size_t bin = 0; bin < kBins; ++bin)
+      if (bins_[bin] > 0) visit(upper_edge_ns(bin), bins_[bin]);
+  }
 
  private:
   static constexpr int kSubBits = 6;

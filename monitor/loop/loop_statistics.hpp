@@ -30,16 +30,15 @@ struct MinimumSeen {
 struct RunStatistics {
   std::uint64_t cycle = 0;
   std::int64_t now_ns = 0;
-  std::uint64_t clock_steps = 0;     // steps of CLOCK_REALTIME,
-  std::int64_t clock_offset_ns = 0;  // and their sum: TickTime
-  Histogram tick;                    // from the wake-up to the handing over of the report
-  Histogram wakeup;                  // delays of the tick thread's wake-ups
-  // From when the oldest batch of a tick came until the handing over of its report.
-  Histogram response;
+  std::uint64_t clock_steps = 0;        // steps of CLOCK_REALTIME,
+  std::int64_t clock_offset_ns = 0;     // and their sum: TickTime
+  Histogram tick;                       // from the wake-up to the handing over of the report
+  Histogram wakeup;                     // delays of the tick thread's wake-ups
   std::int64_t tick_second_max_ns = 0;  // since the previous statistics
   std::int64_t wakeup_second_max_ns = 0;
   std::uint64_t overruns = 0;                            // ticks that ended after the next deadline
   std::uint64_t skipped_cycles = 0;                      // deadlines that passed without a tick
+  std::uint64_t late_responses = 0;                      // ticks: Monitor::response_is_late()
   std::array<std::uint64_t, kRejects> rejected_total{};  // unknown ids included
   std::array<SourceName, kMaxSources> sources;           // by number: InputAge::source
 };

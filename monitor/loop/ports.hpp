@@ -5,9 +5,12 @@
 // sleep_until), allocate or throw.
 #pragma once
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 
+#include "config/scene/sensor.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/inputs/tick_time.hpp"
 #include "monitor/interface/report.hpp"
@@ -22,6 +25,16 @@ class PoseSource {
   // The next batch in the order of arrival, or null when none waits. It is valid until the next
   // call.
   virtual const PoseBatch* next() noexcept = 0;
+};
+
+// The inputs whose age is a part of the response time: by number of the source, then by sensor.
+inline constexpr std::size_t kMostInputs = kMaxSources + kMaxSensors;
+
+// What the response times of a report consist of, but for its own delay.
+struct ReportStart {
+  std::int64_t told_ns = 0;  // the time of the tick, CLOCK_MONOTONIC
+  // Of the oldest value that each input sent last, ns; -1: none lately.
+  std::array<std::int64_t, kMostInputs> ages_ns{};
 };
 
 // A sink of reports. It copies what it keeps.
@@ -39,6 +52,14 @@ class ReportSink {
   // The tick of the report that follows goes on from the state of a partner, which was taken for
   // this lineage. Partners only.
   virtual void joined(std::uint64_t /*lineage*/) noexcept {}
+  // Of the report that follows.
+  virtual void start(const ReportStart& /*start*/) noexcept {}
+  // The longest that a report took from its `told_ns` until it was published, since the last call,
+  // or until `now_ns` where it is not published yet, CLOCK_MONOTONIC. kNotMeasured: there is none,
+  // or the sink does not publish.
+  [[nodiscard]] virtual std::int64_t longest_delay(std::int64_t /*now_ns*/) noexcept {
+    return TickTime::kNotMeasured;
+  }
   // `sources`: the last batch of each source that this tick used; empty when there was none.
   virtual void report(const Report& report, std::span<const SourceUse> sources) noexcept = 0;
   // Called once per second, and after the last tick.

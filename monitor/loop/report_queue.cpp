@@ -35,7 +35,8 @@ ReportQueue::ReportQueue(const Scene& scene, const ReportQueueOptions& options)
       inputs_(std::max<std::size_t>(options.inputs, 1)),
       statistics_(kStatisticsSlots),
       keeps_inputs_(options.inputs > 0),
-      awaits_(options.awaits) {
+      awaits_(options.awaits),
+      told_ns_(options.reports + 1) {
   const auto published = std::count_if(scene.pairs.begin(), scene.pairs.end(),
                                        [](const ObjectPair& pair) { return pair.publish; });
   const SeparatedCount separated = separated_count(scene);
@@ -99,6 +100,25 @@ void ReportQueue::input(const PoseBatch& batch) noexcept {
   inputs_.push();
 }
 
+// The exchange of the tick thread and the maximum here lose nothing: a delay that comes in between
+// is told with the next call.
+void ReportQueue::published(std::int64_t delay_ns) noexcept {
+  std::int64_t longest = longest_delay_ns_.load(std::memory_order_relaxed);
+  while (delay_ns > longest &&
+         !longest_delay_ns_.compare_exchange_weak(longest, delay_ns, std::memory_order_relaxed)) {
+  }
+  published_.fetch_add(1, std::memory_order_release);
+}
+
+// While the consumer hangs, the oldest report that waits tells for how long.
+std::int64_t ReportQueue::longest_delay(std::int64_t now_ns) noexcept {
+  const std::uint64_t published = published_.load(std::memory_order_acquire);
+  const std::int64_t longest =
+      longest_delay_ns_.exchange(TickTime::kNotMeasured, std::memory_order_relaxed);
+  if (published == 0 || published == handed_over_) return longest;
+  return std::max(longest, now_ns - told_ns_[published % told_ns_.size()]);
+}
+
 // Copies into a slot that was made beforehand; a full queue drops the report and counts it.
 void ReportQueue::report(const Report& report, std::span<const SourceUse> sources) noexcept {
   QueuedReport* slot = reports_.back();
@@ -112,6 +132,8 @@ void ReportQueue::report(const Report& report, std::span<const SourceUse> source
   slot->handed_over_ns = SystemClock().realtime_ns();
   slot->lineage = lineage_;
   slot->joined = std::exchange(joined_, 0);
+  slot->start = start_;
+  told_ns_[handed_over_++ % told_ns_.size()] = start_.told_ns;
   reports_.push();
   if (!awake_.exchange(false, std::memory_order_acq_rel)) ready_.post();
 }

@@ -7,6 +7,7 @@
 #include <atomic>
 #include <cstdint>
 #include <span>
+#include <vector>
 
 #include "config/scene/scene.hpp"
 #include "monitor/loop/ports.hpp"
@@ -23,6 +24,7 @@ struct QueuedReport {
   std::int64_t handed_over_ns = 0;  // time of the handing over, CLOCK_REALTIME
   std::uint64_t lineage = 0;        // of partners; 0: of a daemon on its own
   std::uint64_t joined = 0;         // ReportSink::joined(); 0: it goes on from the tick before
+  ReportStart start;
 
   [[nodiscard]] std::span<const SourceUse> sources() const noexcept {
     return std::span(sources_used).first(source_count);
@@ -49,6 +51,8 @@ class ReportQueue final : public ReportSink {
   void input(const PoseBatch& batch) noexcept override;
   void lineage(std::uint64_t lineage) noexcept override { lineage_ = lineage; }
   void joined(std::uint64_t lineage) noexcept override { joined_ = lineage; }
+  void start(const ReportStart& start) noexcept override { start_ = start; }
+  [[nodiscard]] std::int64_t longest_delay(std::int64_t now_ns) noexcept override;
   void report(const Report& report, std::span<const SourceUse> sources) noexcept override;
   void statistics(const LoopStatistics& statistics) noexcept override;
 
@@ -62,6 +66,9 @@ class ReportQueue final : public ReportSink {
   void wait() noexcept;
   [[nodiscard]] bool closed() const noexcept { return closed_.load(std::memory_order_acquire); }
   SpscRing<QueuedReport>& reports() noexcept { return reports_; }
+  // The consumer has published the first report of the queue within this time of its `told_ns`.
+  // kNotMeasured: it leaves the report out. A consumer that does not publish calls neither.
+  void published(std::int64_t delay_ns) noexcept;
   SpscRing<PoseBatch>& inputs() noexcept { return inputs_; }
   SpscRing<LoopStatistics>& statistics() noexcept { return statistics_; }
 
@@ -75,10 +82,15 @@ class ReportQueue final : public ReportSink {
   SpscRing<LoopStatistics> statistics_;
   bool keeps_inputs_, awaits_;
   std::uint64_t lineage_ = 0, joined_ = 0;  // of the next report
+  ReportStart start_;                       // likewise
   Semaphore ready_;
   std::atomic<bool> closed_{false};
   std::atomic<std::int64_t> awake_until_ns_{0};  // CLOCK_MONOTONIC; 0: no report is expected
   std::atomic<bool> awake_{false};               // the consumer looks for a report all the time
+  std::atomic<std::int64_t> longest_delay_ns_{TickTime::kNotMeasured};
+  std::vector<std::int64_t> told_ns_;  // of the last reports that were handed over, in turn
+  std::uint64_t handed_over_ = 0;
+  std::atomic<std::uint64_t> published_{0};
   std::atomic<std::uint64_t> dropped_reports_{0};
   std::atomic<std::uint64_t> dropped_inputs_{0};
 };

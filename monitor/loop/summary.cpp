@@ -15,17 +15,32 @@ std::string percentiles(const Histogram& histogram) {
                      kUsPerNs * static_cast<double>(histogram.max_ns()));
 }
 
-std::string run_summary(const RunStatistics& statistics, double seconds,
-                        std::uint64_t dropped_reports) {
+std::string histograms_json(std::initializer_list<std::pair<const char*, Histogram>> histograms) {
+  std::string json = "{";
+  for (const auto& [name, histogram] : histograms) {
+    std::string bins;
+    histogram.each_bin([&bins](std::int64_t upper_ns, std::uint64_t count) {
+      bins += fmt::format("{}[{}, {}]", bins.empty() ? "" : ", ", upper_ns, count);
+    });
+    json +=
+        fmt::format("{}\n\"{}\": {{\"count\": {}, \"max_ns\": {}, \"bins\": [{}]}}",
+                    json.size() > 1 ? "," : "", name, histogram.count(), histogram.max_ns(), bins);
+  }
+  return json + "\n}\n";
+}
+
+std::string run_summary(const RunStatistics& statistics, const ResponseTimes& responses,
+                        double seconds, std::uint64_t dropped_reports) {
   return fmt::format(
       "{} in {:.2f} s, {}, {}, {} dropped\n"
       "tick     {}\n"
       "wake-up  {}\n"
-      "response {}, from when an input came\n",
+      "report   {}, from the tick until DDS has it\n"
+      "response {}, from the stamp of the slowest input until then\n",
       counted(statistics.cycle, "tick"), seconds, counted(statistics.overruns, "overrun"),
       counted(statistics.skipped_cycles, "skipped cycle"), counted(dropped_reports, "report"),
-      percentiles(statistics.tick), percentiles(statistics.wakeup),
-      percentiles(statistics.response));
+      percentiles(statistics.tick), percentiles(statistics.wakeup), percentiles(responses.delays()),
+      percentiles(responses.slowest()));
 }
 
 // Says "none" when no pair was ever evaluated, so that no number stands for nothing.

@@ -5,7 +5,12 @@
 #include <algorithm>
 #include <chrono>
 #include <cmath>
+#include <limits>
 #include <thread>
+#include <utility>
+
+#include "monitor/inputs/elapsed.hpp"
+#include "monitor/inputs/input_owner.hpp"
 
 namespace clearance {
 namespace {
@@ -16,6 +21,7 @@ namespace {
 constexpr std::int64_t kLongestWithoutSleep = 50'000'000, kShortSleep = 10'000;
 // Another thread asks so often whether its answer has come.
 constexpr std::chrono::microseconds kAnswerPoll{50};
+constexpr std::int64_t kNoStamp = std::numeric_limits<std::int64_t>::min();
 
 }  // namespace
 
@@ -31,6 +37,7 @@ TickLoop::TickLoop(const Scene& scene, PoseSource& source, std::vector<ReportSin
       ticks_a_second_(std::max<std::uint64_t>(1, std::llround(scene.rate_hz))),
       phase_(period_ns_),
       statistics_(scene) {
+  stamps_ns_.fill(kNoStamp);
   options_.ahead_ns = std::min(options_.ahead_ns, period_ns_ / 2);
 }
 
@@ -42,12 +49,11 @@ void TickLoop::run(const std::atomic<bool>& stop) noexcept {
   while (!stop.load(std::memory_order_relaxed)) {
     deadline = wait(deadline);
     const std::int64_t started = clock_.monotonic_ns();
-    tick_once();
+    tick_once(deadline);
     const std::int64_t ended = clock_.monotonic_ns();
 
     statistics_.wakeup.add(started - deadline);
     statistics_.tick.add(ended - started);
-    if (oldest_came_ns_ != 0) statistics_.response.add(ended - oldest_came_ns_);
     statistics_.wakeup_second_max_ns =
         std::max(statistics_.wakeup_second_max_ns, started - deadline);
     statistics_.tick_second_max_ns = std::max(statistics_.tick_second_max_ns, ended - started);
@@ -77,6 +83,8 @@ std::int64_t TickLoop::wait(std::int64_t deadline) noexcept {
   }
   clock_.sleep_until(deadline - options_.pace->ahead_ns());
   between_ticks();
+  note_delay();
+  options_.pace->note_report_delay(delay_.longest_ns());
   return state_.decide(deadline);
 }
 
@@ -99,12 +107,20 @@ std::int64_t TickLoop::next_deadline(std::int64_t deadline, std::int64_t ended) 
   return next + missed * period_ns_;
 }
 
-// Runs one tick and gives its report to every sink.
-void TickLoop::tick_once() noexcept {
+// Runs one tick and gives its report to every sink. The time of a tick with a pace is that of its
+// deadline.
+void TickLoop::tick_once(std::int64_t deadline) noexcept {
   TickPace* const pace = options_.pace;
-  if (pace == nullptr) between_ticks();
+  if (pace == nullptr) {
+    between_ticks();
+    note_delay();
+  }
   take_in();
+  note_stamps();
+  const std::int64_t told_ns = pace == nullptr ? clock_.monotonic_ns() : deadline;
   const Report& report = state_.tick(tick_time());
+  statistics_.late_responses += state_.monitor().response_is_late();
+  start_report(told_ns, report);
   statistics_.cycle = report.cycle;
   statistics_.now_ns = report.now_ns;
   statistics_.clock_offset_ns = report.clock_offset_ns;
@@ -113,6 +129,7 @@ void TickLoop::tick_once() noexcept {
   for (ReportSink* const sink : sinks_) {
     for (const ShownFrame& frame : state_.shown()) sink->frame(frame.sensor, frame.stamp_ns);
     if (pace != nullptr) sink->lineage(pace->lineage());
+    sink->start(start_);
     sink->report(report, std::span(used_).first(used_count_));
   }
   state_.clear();
@@ -120,8 +137,47 @@ void TickLoop::tick_once() noexcept {
 
 TickTime TickLoop::tick_time() noexcept {
   if (options_.pace != nullptr) return options_.pace->time();
-  return options_.time == nullptr ? time_.read(clock_)
-                                  : options_.time->tick_time(clock_.monotonic_ns());
+  TickTime time = options_.time == nullptr ? time_.read(clock_)
+                                           : options_.time->tick_time(clock_.monotonic_ns());
+  time.report_delay_ns = delay_.longest_ns();
+  return time;
+}
+
+void TickLoop::note_delay() noexcept {
+  const std::int64_t now_ns = clock_.monotonic_ns();
+  std::int64_t longest = TickTime::kNotMeasured;
+  for (ReportSink* const sink : sinks_) longest = std::max(longest, sink->longest_delay(now_ns));
+  delay_.add(now_ns, longest);
+}
+
+// The samples of a tick are those that came last: of each source, the oldest one counts until it
+// sends again.
+void TickLoop::note_stamps() noexcept {
+  std::array<bool, kMaxSources> sends{};
+  const auto note = [&](std::uint32_t source, std::int64_t stamp_ns) {
+    if (source >= kMaxSources) return;
+    const bool is_first = !std::exchange(sends[source], true);
+    stamps_ns_[source] = is_first ? stamp_ns : std::min(stamps_ns_[source], stamp_ns);
+  };
+  for (const PoseSample& sample : state_.samples()) note(sample.source, sample.stamp_ns);
+  for (const JointSample& sample : state_.joints()) note(sample.source, sample.stamp_ns);
+}
+
+// A source that is silent for long has no part in the report: what it sent is late.
+void TickLoop::start_report(std::int64_t told_ns, const Report& report) noexcept {
+  start_.told_ns = told_ns;
+  start_.ages_ns.fill(-1);
+  const std::int64_t now_ns = report.now_ns + report.clock_offset_ns;
+  for (std::size_t i = 0; i < kMaxSources; ++i) {
+    if (stamps_ns_[i] == kNoStamp) continue;
+    const std::int64_t age_ns = elapsed(stamps_ns_[i], now_ns);
+    if (age_ns <= kSourceSilentNs) start_.ages_ns[i] = age_ns;
+  }
+  const std::vector<Sensor>& sensors = state_.scene().sensors;
+  for (std::size_t i = 0; i < sensors.size(); ++i) {
+    const InputAge age = state_.monitor().input_age(sensors[i].object);
+    if (age.age_ns <= kSourceSilentNs) start_.ages_ns[kMaxSources + i] = age.age_ns;
+  }
 }
 
 bool TickLoop::offer(SceneOffer& offer) noexcept {
@@ -199,7 +255,6 @@ void TickLoop::change_scene(SceneOffer& offer) noexcept {
 // Batches are used whole: a batch that does not fit waits for the next tick.
 void TickLoop::take_in() noexcept {
   used_count_ = 0;
-  oldest_came_ns_ = 0;
   for (;;) {
     if (waiting_ == nullptr) waiting_ = source_.next();
     if (waiting_ == nullptr) return;
@@ -215,7 +270,6 @@ void TickLoop::take_in() noexcept {
 void TickLoop::use(const PoseBatch& batch) noexcept {
   note_source(batch);
   note_phase(batch);
-  if (oldest_came_ns_ == 0) oldest_came_ns_ = batch.came_ns;  // they come in their order
   if (state_.use(batch)) return;
   for (const PoseSample& sample : batch.samples)
     state_.monitor().refuse(sample.object, Reject::kWrongRevision);

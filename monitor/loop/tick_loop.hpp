@@ -13,6 +13,7 @@
 #include "monitor/loop/loop_question.hpp"
 #include "monitor/loop/phase_lock.hpp"
 #include "monitor/loop/ports.hpp"
+#include "monitor/loop/report_delay.hpp"
 #include "monitor/loop/steady_time.hpp"
 #include "monitor/tick/tick_state.hpp"
 
@@ -100,11 +101,14 @@ class TickLoop {
   void answer_question() noexcept;
   void change_scene(SceneOffer& offer) noexcept;
   void take_in() noexcept;
-  void tick_once() noexcept;
+  void tick_once(std::int64_t deadline) noexcept;
   [[nodiscard]] TickTime tick_time() noexcept;
   void use(const PoseBatch& batch) noexcept;
   void note_source(const PoseBatch& batch) noexcept;
   void note_phase(const PoseBatch& batch) noexcept;
+  void note_stamps() noexcept;
+  void note_delay() noexcept;
+  void start_report(std::int64_t told_ns, const Report& report) noexcept;
   void note_minimum(const Report& report) noexcept;
   void hand_over_statistics() noexcept;
   [[nodiscard]] std::int64_t next_deadline(std::int64_t deadline, std::int64_t ended) noexcept;
@@ -121,7 +125,9 @@ class TickLoop {
   std::int64_t period_ns_;
   std::uint64_t ticks_a_second_;
   PhaseLock phase_;
-  std::int64_t oldest_came_ns_ = 0;  // of the batches of this tick; 0: none is known
+  ReportDelay delay_;
+  std::array<std::int64_t, kMaxSources> stamps_ns_;  // oldest of the last samples of each source
+  ReportStart start_;
 
   const PoseBatch* waiting_ = nullptr;  // taken from the source, but did not fit into the last tick
   std::array<SourceUse, kMaxSources> used_;

@@ -77,6 +77,7 @@ class TickPartner final : public PoseSource, public TickPace {
   // Tick thread.
   const PoseBatch* next() noexcept override { return store_.next(); }
   [[nodiscard]] std::int64_t ahead_ns() const noexcept override { return options_.period_ns / 4; }
+  void note_report_delay(std::int64_t ns) noexcept override { report_delay_ns_ = ns; }
   std::int64_t decide(std::int64_t deadline, std::uint64_t cycle,
                       std::uint64_t revision) noexcept override;
   [[nodiscard]] TickTime time() noexcept override { return time_; }
@@ -135,8 +136,9 @@ class TickPartner final : public PoseSource, public TickPace {
   TickTime time_;
   // The lead of the leader's time over this daemon's own, and the offsets of both at that tick.
   std::int64_t ahead_of_own_ns_ = 0, offset_ns_ = 0, own_offset_ns_ = 0;
-  std::int64_t told_late_ns_ = 0;  // see TickNotice
-  bool has_joined_ = false;        // and has followed no notice since
+  std::int64_t told_late_ns_ = 0;                          // see TickNotice
+  std::int64_t report_delay_ns_ = TickTime::kNotMeasured;  // of this daemon
+  bool has_joined_ = false;                                // and has followed no notice since
 
   std::array<TickFrame, kMaxSensors> frames_;      // that the next tick is shown
   std::array<std::int64_t, kMaxSensors> waits_{};  // by sensor: since when a frame waits; 0: none

@@ -31,16 +31,18 @@ Status tick_status(const clearance_msg_Health& health, std::uint64_t overruns,
     status.raise(DiagnosticLevel::kWarn,
                  fmt::format("{} ended late in the last second", counted(overruns, "tick")));
   const auto us = [](double value) { return fmt::format("{:.1f} us", value); };
-  status.values = {{"cycle", std::to_string(health.cycle)},
-                   {"tick p50", us(health.tick_p50_us)},
-                   {"tick p99.9", us(health.tick_p999_us)},
-                   {"tick max", us(health.tick_max_us)},
-                   {"response p99.9", us(health.response_p999_us)},
-                   {"response max", us(health.response_max_us)},
-                   {"overruns", std::to_string(health.overruns)},
-                   {"skipped cycles", std::to_string(health.skipped_cycles)},
-                   {"lost batches", std::to_string(health.lost_batches)},
-                   {"dropped reports", std::to_string(health.dropped_reports)}};
+  status.values = {
+      {"cycle", std::to_string(health.cycle)},
+      {"tick p50", us(health.tick_p50_us)},
+      {"tick p99.9", us(health.tick_p999_us)},
+      {"tick max", us(health.tick_max_us)},
+      {"response p99.9", us(health.response_p999_us)},
+      {"response max", us(health.response_max_us)},
+      {"slowest input", health.responses._length == 0 ? "none" : health.responses._buffer[0].input},
+      {"overruns", std::to_string(health.overruns)},
+      {"skipped cycles", std::to_string(health.skipped_cycles)},
+      {"lost batches", std::to_string(health.lost_batches)},
+      {"dropped reports", std::to_string(health.dropped_reports)}};
   return status;
 }
 

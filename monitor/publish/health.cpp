@@ -15,24 +15,36 @@ namespace {
 // The health topic has times in us.
 constexpr double kUsPerNs = 1e-3;
 
+void fill(const Histogram& from, double& p50, double& p999, double& max) {
+  p50 = kUsPerNs * static_cast<double>(from.percentile_ns(0.5));
+  p999 = kUsPerNs * static_cast<double>(from.percentile_ns(0.999));
+  max = kUsPerNs * static_cast<double>(from.max_ns());
+}
+
 // Times of the loop, as microseconds.
 void fill_loop(const LoopStatistics& statistics, clearance_msg_Health& out) {
   out.cycle = statistics.cycle;
   out.now_ns = statistics.now_ns;
-  const auto fill = [](const Histogram& from, double& p50, double& p999, double& max) {
-    p50 = kUsPerNs * static_cast<double>(from.percentile_ns(0.5));
-    p999 = kUsPerNs * static_cast<double>(from.percentile_ns(0.999));
-    max = kUsPerNs * static_cast<double>(from.max_ns());
-  };
   fill(statistics.tick, out.tick_p50_us, out.tick_p999_us, out.tick_max_us);
   fill(statistics.wakeup, out.wakeup_p50_us, out.wakeup_p999_us, out.wakeup_max_us);
-  fill(statistics.response, out.response_p50_us, out.response_p999_us, out.response_max_us);
+  out.late_responses = statistics.late_responses;
   out.tick_second_max_us = kUsPerNs * static_cast<double>(statistics.tick_second_max_ns);
   out.wakeup_second_max_us = kUsPerNs * static_cast<double>(statistics.wakeup_second_max_ns);
   out.clock_steps = statistics.clock_steps;
   out.clock_offset_ns = statistics.clock_offset_ns;
   out.overruns = statistics.overruns;
   out.skipped_cycles = statistics.skipped_cycles;
+}
+
+void fill_responses(const ResponseTimes& responses, clearance_msg_Health& out) {
+  fill(responses.slowest(), out.response_p50_us, out.response_p999_us, out.response_max_us);
+  const std::vector<InputResponse> inputs = responses.inputs();
+  reserve_sequence(out.responses, inputs.size());
+  for (const InputResponse& of : inputs) {
+    out.responses._buffer[out.responses._length++] = {dds_string_dup(of.input.c_str()),
+                                                      kUsPerNs * static_cast<double>(of.p50_ns),
+                                                      kUsPerNs * static_cast<double>(of.max_ns)};
+  }
 }
 
 // Only causes that occurred are listed; the sequence was sized for all of them.
@@ -234,7 +246,8 @@ void fill_sources(const std::vector<SourceTally>& sources, const SourceTally& de
 // The sample is new each time, since its strings differ in length from second to second.
 Sample<clearance_msg_Health> make_health(const Scene& scene, const LoopStatistics& statistics,
                                          const PoseReader& poses, std::uint64_t dropped_reports,
-                                         const RecordingHealth& recording) {
+                                         const RecordingHealth& recording,
+                                         const ResponseTimes* responses) {
   Sample<clearance_msg_Health> sample;
   sample->scene_revision = scene.revision;
   sample->dropped_reports = dropped_reports;
@@ -242,6 +255,7 @@ Sample<clearance_msg_Health> make_health(const Scene& scene, const LoopStatistic
   sample->recording_missing = recording.missing();
   sample->undecodable_samples = poses.undecodable();
   fill_loop(statistics, *sample);
+  if (responses != nullptr) fill_responses(*responses, *sample);
   const std::vector<SensorStatus> sensors = poses.sensors();
   fill_rejections(scene, statistics, poses, sensors, *sample);
   fill_witnesses(scene, sensors, *sample);

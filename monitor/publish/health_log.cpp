@@ -1,6 +1,8 @@
 // The counts of a sample only grow. The log tells their growth, which shows when a fault began.
 #include "monitor/publish/health_log.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
 #include <set>
 #include <string>
@@ -85,6 +87,20 @@ void HealthLog::log_clock(const clearance_msg_Health& health) {
   clock_offset_ns_ = health.clock_offset_ns;
 }
 
+// One line when the response becomes too late, and one when it is not any more.
+void HealthLog::log_response(const clearance_msg_Health& health) {
+  const std::uint64_t ticks =
+      health.late_responses - std::exchange(late_responses_, health.late_responses);
+  const bool was_late = std::exchange(response_is_late_, ticks > 0);
+  if (was_late == response_is_late_) return;
+  if (was_late) return log_line(lines::kResponseBack);
+  const bool is_known = health.responses._length > 0;
+  log_line(lines::kResponseLate, counted(ticks, "tick"),
+           is_known ? fmt::format("{}, {:.1f} ms", health.responses._buffer[0].input,
+                                  1e-3 * health.responses._buffer[0].max_us)
+                    : std::string("not known yet"));
+}
+
 // Inputs that change together share one line: all joints of a robot have the same source.
 void HealthLog::log_notes(const clearance_msg_Health& health) {
   std::map<std::pair<std::string, std::string>, std::vector<std::string>> changed;
@@ -133,6 +149,7 @@ void HealthLog::update(const clearance_msg_Health& health,
   joints_.update(health.joints, senders_of_joints);
   log_notes(health);
   log_clock(health);
+  log_response(health);
   log_growth(lines::kBatchesLost, health.lost_batches, lost_, "batch", "batches");
   log_growth(lines::kUndecodable, health.undecodable_samples, undecodable_, "sample");
   log_growth(lines::kOtherReports, health.foreign_reports, foreign_, "report");

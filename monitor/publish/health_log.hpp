@@ -29,6 +29,7 @@ class HealthLog {
  private:
   void log_clock(const clearance_msg_Health& health);
   void log_notes(const clearance_msg_Health& health);
+  void log_response(const clearance_msg_Health& health);
 
   RefusalLog refusals_;
   struct Poses {
@@ -47,6 +48,8 @@ class HealthLog {
   };
   std::map<std::string, Note> notes_;
   JointLog joints_;
+  std::uint64_t late_responses_ = 0;
+  bool response_is_late_ = false;
   std::uint64_t clock_steps_ = 0;
   std::int64_t clock_offset_ns_ = 0;
   // A count whose growth is told: at once, then after pauses that double while it goes on growing.

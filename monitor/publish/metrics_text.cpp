@@ -85,14 +85,22 @@ void add_loop(const MetricsSource& source, Families& out) {
   out.counter("overruns_total", "Ticks that ended after the next deadline.", health.overruns);
   out.counter("skipped_cycles_total", "Deadlines that passed without a tick.",
               health.skipped_cycles);
+  out.counter("late_responses_total", "Ticks with an input beyond response_limit_ms.",
+              health.late_responses);
+  out.open("input_response_max_seconds",
+           "The longest from the stamp of an input to the handing over of a report that uses it.",
+           MetricType::Gauge);
+  for (const clearance_msg_InputResponse& of : items(health.responses))
+    out.value(1e-6 * of.max_us, {{"input", of.input}});
   if (source.statistics == nullptr) return;
   out.histogram("tick_seconds", "From the wake-up to the handing over of the report.",
                 source.statistics->tick);
   out.histogram("wakeup_delay_seconds", "Delays of the tick thread's wake-ups.",
                 source.statistics->wakeup);
+  if (source.responses == nullptr) return;
   out.histogram("response_seconds",
-                "From when the oldest input of a tick came to the handing over of the report.",
-                source.statistics->response);
+                "From the stamp of the slowest input of a tick to the handing over of its report.",
+                source.responses->slowest());
 }
 
 // An input that has never come has no age. Links follow from joints.

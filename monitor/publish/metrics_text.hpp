@@ -7,6 +7,7 @@
 #include "clearance.h"
 #include "config/scene/scene.hpp"
 #include "monitor/loop/loop_statistics.hpp"
+#include "monitor/loop/response_times.hpp"
 
 namespace clearance {
 
@@ -16,6 +17,7 @@ struct MetricsSource {
   const clearance_msg_Distances* report = nullptr;    // the last one; null: none has come
   std::function<bool(std::uint32_t zone)> is_active;  // empty: zones are not known
   const LoopStatistics* statistics = nullptr;         // null in other processes: no histograms
+  const ResponseTimes* responses = nullptr;           // likewise
 };
 
 // README.md of this room lists the metrics. Allocates.

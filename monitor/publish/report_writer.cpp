@@ -239,9 +239,10 @@ void ReportWriter::write_report(const QueuedReport& queued) {
   zones_.note(queued.report);
   if (!tag.publishes) {
     published_ = queued.report.cycle;
-    return;
+    return note_delay(queued, false);
   }
   const bool published = write_distances(queued, tag);
+  note_delay(queued, published);
   if (leads_ && separated_count(now_->cell.scene).any()) write_separation(queued.report);
   if (leads_ && now_->cell.scene.gradients) {
     clearance_msg_Gradients& gradients = now_->gradients.of(queued.report, dds_time());
@@ -253,6 +254,14 @@ void ReportWriter::write_report(const QueuedReport& queued) {
   if (also_ != nullptr && leads_) also_->report_ended();
   contact_log_.note(queued.report.contacts);
   if (published) published_ = queued.report.cycle;
+}
+
+// The time that clients need to receive the report is not in it.
+void ReportWriter::note_delay(const QueuedReport& queued, bool published) {
+  if (!published) return now_->queue.published(TickTime::kNotMeasured);
+  const std::int64_t delay_ns = std::max<std::int64_t>(0, monotonic_ns() - queued.start.told_ns);
+  now_->queue.published(delay_ns);
+  responses_.add(queued.start, delay_ns);
 }
 
 bool ReportWriter::write_distances(const QueuedReport& queued, const TickTag& tag) {
@@ -307,9 +316,10 @@ void ReportWriter::write_separation(const Report& report) {
 
 // Failed writes count as dropped: in both cases the client got nothing.
 void ReportWriter::write_health(const LoopStatistics& statistics) {
+  responses_.name(statistics, now_->cell.scene);
   auto sample = make_health(now_->cell.scene, statistics, poses_,
                             dropped_before_ + now_->queue.dropped_reports() + failed_writes_.load(),
-                            recording_);
+                            recording_, &responses_);
   sample->daemon = identity_.id;
   sample->other_writers = others_.writers();
   sample->foreign_reports = others_.reports();
@@ -320,7 +330,8 @@ void ReportWriter::write_health(const LoopStatistics& statistics) {
                 .health = *sample,
                 .report = now_->distances->cycle == 0 ? nullptr : &*now_->distances,
                 .is_active = [this](std::uint32_t zone) { return zones_.is_active(zone); },
-                .statistics = &statistics});
+                .statistics = &statistics,
+                .responses = &responses_});
   }
   zones_.end_second();
   contact_log_.end_second();

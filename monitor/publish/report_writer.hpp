@@ -16,6 +16,7 @@
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/inputs/scene_in_force.hpp"
 #include "monitor/loop/report_queue.hpp"
+#include "monitor/loop/response_times.hpp"
 #include "monitor/participant/participant.hpp"
 #include "monitor/publish/contact_log.hpp"
 #include "monitor/publish/health.hpp"
@@ -74,6 +75,7 @@ class ReportWriter {
   [[nodiscard]] std::uint64_t failed_writes() const noexcept { return failed_writes_.load(); }
   // The cycle of the last report that was published, or left to the partner; 0: none yet.
   [[nodiscard]] std::uint64_t published_cycle() const noexcept { return published_.load(); }
+  [[nodiscard]] const ResponseTimes& responses() const noexcept { return responses_; }
   // Before finish(): the thread that writes.
   [[nodiscard]] std::thread::native_handle_type thread() { return thread_.native_handle(); }
   // True if an older daemon publishes this cell. This one then writes nothing more.
@@ -102,6 +104,7 @@ class ReportWriter {
   [[nodiscard]] Sample<clearance_msg_Catalogue> own_catalogue() const;
   void look_for_others();
   void write_report(const QueuedReport& queued);
+  void note_delay(const QueuedReport& queued, bool published);
   [[nodiscard]] bool write_distances(const QueuedReport& queued, const TickTag& tag);
   void note_standing(PartnerStanding standing);
   void settle_catalogue();
@@ -130,6 +133,7 @@ class ReportWriter {
   std::int64_t refused_ns_ = 0;       // the last time that DDS did not take the catalogue
   std::int64_t active_again_ns_ = 0;  // the last time that active zones were due again
   std::uint64_t dropped_before_ = 0;  // by queues of former cells
+  ResponseTimes responses_;
   std::atomic<std::uint64_t> failed_writes_{0};
   std::atomic<std::uint64_t> published_{0};
   mutable std::mutex mutex_;            // guards the next three

@@ -109,7 +109,7 @@ bool TickFeed::next_by_report(TickInput& tick) {
   if (!run_->next()) return false;
   const clearance_msg_Distances& report = run_->report();
   tick.recorded = &report;
-  tick.time = {report.now_ns, report.clock_offset_ns};
+  tick.time = {report.now_ns, report.clock_offset_ns, report.report_delay_ns};
   tick.joined = run_->joined();
   tick.state = run_->state();
   tick.restart = run_->is_restart();

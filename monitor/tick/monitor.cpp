@@ -80,7 +80,7 @@ const Report& Monitor::tick(std::span<const PoseSample> samples,
   judge(tick, s.crossings, s.contacts);
   s.conclusion =
       conclude(s.published, displaced, s.culling, s.crossings, tick, s.zones, s.report.pairs);
-  s.separations.write(s.inputs.objects, s.inputs.cycle, s.report);
+  s.separations.write(s.inputs.objects, s.inputs.cycle, time.report_delay_ns, s.report);
   s.stops.write(s.inputs, s.clouds.get(), s.contacts, s.report);
   s.differentiation.differentiate(s.report.pairs, tick, s.inputs.robots, s.report.gradients);
   s.finish_report(s.scene.budget - budget.left());
@@ -271,6 +271,7 @@ void Monitor::State::finish_report(std::uint32_t queries) noexcept {
   report.cycle = inputs.cycle;
   report.now_ns = inputs.time.now_ns;
   report.clock_offset_ns = inputs.time.clock_offset_ns;
+  report.report_delay_ns = inputs.time.report_delay_ns;
   report.newest_pose_ns = displacer.result().newest_pose_ns;
   report.oldest_pose_ns = displacer.result().oldest_pose_ns;
   report.rejected = inputs.rejected;

@@ -151,6 +151,10 @@ class Monitor {
   // below `level`, m, a closer search runs until it has decided, without a budget. Changes nothing.
   [[nodiscard]] SweptBounds sweep(std::uint32_t pair, double level) const noexcept;
 
+  // True if an input of the last tick was within its age limit, but not within
+  // Scene::response_limit_ns, as far as reports were measured.
+  [[nodiscard]] bool response_is_late() const noexcept;
+
   // The age of an object's pose at the last tick.
   [[nodiscard]] InputAge input_age(std::uint32_t object) const noexcept;
 

@@ -77,4 +77,10 @@ std::vector<ErrorShare> Monitor::error_shares(std::uint32_t pair) const {
 
 const StatedErrors& Monitor::stated_errors() const noexcept { return state_->errors.stated(); }
 
+bool Monitor::response_is_late() const noexcept {
+  const Inputs& inputs = state_->inputs;
+  return inputs.time.report_delay_ns >= 0 &&
+         (state_->displacer.result().response_is_late || inputs.robots.response_is_late());
+}
+
 }  // namespace clearance

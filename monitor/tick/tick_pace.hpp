@@ -15,6 +15,8 @@ class TickPace {
   virtual ~TickPace() = default;
   // The time before a deadline at which decide() is to be called.
   [[nodiscard]] virtual std::int64_t ahead_ns() const noexcept = 0;
+  // Before decide(): what a leading daemon tells its tick (TickTime::report_delay_ns).
+  virtual void note_report_delay(std::int64_t /*ns*/) noexcept {}
   // Decides on the next tick of the scene of this revision, which will have this cycle, and sleeps
   // until it is due. Returns its deadline, CLOCK_MONOTONIC: `deadline` or that of the partner.
   virtual std::int64_t decide(std::int64_t deadline, std::uint64_t cycle,

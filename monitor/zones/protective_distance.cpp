@@ -29,12 +29,18 @@ Stopping stopping(const Separation& terms) noexcept {
   return {.time = time / speed, .distance = terms.stopping_distance / (speed * speed)};
 }
 
+// T_r, s.
+double reaction_time(const Separation& terms, const Approach& approach) noexcept {
+  const double stated = seconds(terms.reaction_time_ns);
+  return approach.report_delay > 0.0 ? rounded_up(stated + approach.report_delay) : stated;
+}
+
 // `human_age` and `counted`, m: the person's path begins this long ago, and this much of it is left
 // out.
 Quadratic quadratic(const Separation& terms, const Approach& approach, double human_age,
                     double counted) noexcept {
   const Stopping s = stopping(terms);
-  const double reaction = seconds(terms.reaction_time_ns);
+  const double reaction = reaction_time(terms, approach);
   const double gained = terms.robot_acceleration * reaction;
   // The time until the robot stands: t0 + t1 v.
   const double t0 = human_age + reaction + s.constant_time + s.time * gained;
@@ -71,7 +77,7 @@ double path(const Approach& approach, double time) noexcept {
 ProtectiveDistance protective_distance(const Separation& terms, const Approach& approach,
                                        double speed) noexcept {
   const Stopping s = stopping(terms);
-  const double reaction = seconds(terms.reaction_time_ns);
+  const double reaction = reaction_time(terms, approach);
   const double braked_from = rounded_up(speed + terms.robot_acceleration * reaction);
   const double since_pose =
       rounded_up(approach.human_age + reaction + s.constant_time + swept(braked_from, s.time));

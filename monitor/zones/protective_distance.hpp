@@ -13,6 +13,7 @@ struct Approach {
   double robot_speed = 0.0;         // m/s
   double human_age = 0.0;           // s: the age of the pose that the distance rests on
   double robot_age = 0.0;
+  double report_delay = 0.0;  // s: the measured part of T_r; 0: none is
   // The path, m, that the distance has already lost because the pose is late. S_p then counts the
   // rest of the path since the pose, if any is left.
   double human_counted = 0.0, robot_counted = 0.0;

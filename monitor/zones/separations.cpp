@@ -116,7 +116,7 @@ void Separations::prepare(Report& report) const {
 }
 
 void Separations::write(std::span<const TrackedObject> objects, std::uint64_t cycle,
-                        Report& report) const noexcept {
+                        std::int64_t report_delay_ns, Report& report) const noexcept {
   for (std::size_t z = 0; z < zones_.size(); ++z) {
     const SeparatedZone& zone = zones_[z];
     ZoneSeparation least{.zone = zone.zone,
@@ -128,7 +128,8 @@ void Separations::write(std::span<const TrackedObject> objects, std::uint64_t cy
     for (std::size_t m = zone.first_member; m < zone.end_member; ++m) {
       const Member& member = members_[m];
       PairSeparation& pair = report.separated_pairs[m];
-      write_pair(zone, member, report.pairs[member.published], objects, cycle, pair);
+      write_pair(zone, member, report.pairs[member.published], objects, cycle, report_delay_ns,
+                 pair);
       if (pair.validity != SeparationValidity::kAbsent) count_in(pair, least);
     }
     report.separated_zones[z] = least;
@@ -139,7 +140,8 @@ void Separations::write(std::span<const TrackedObject> objects, std::uint64_t cy
 // pose is late, its last measured speed counts as well: a larger age never allows more.
 void Separations::write_pair(const SeparatedZone& zone, const Member& member,
                              const PairReport& pair, std::span<const TrackedObject> objects,
-                             std::uint64_t cycle, PairSeparation& out) const noexcept {
+                             std::uint64_t cycle, std::int64_t report_delay_ns,
+                             PairSeparation& out) const noexcept {
   const Separation& terms = *scene_.zones[zone.zone].separation;
   const TrackedObject &human = objects[member.human], &robot = objects[member.robot];
   out = unknown_separation(zone.zone, member.pair);
@@ -156,7 +158,8 @@ void Separations::write_pair(const SeparatedZone& zone, const Member& member,
   const double robot_assumed = std::min(terms.robot_speed, robot_limit);
   const bool robot_known = robot.velocity_known();
   if (pair.status == PairStatus::kUnknown || !(pair.lower > -kInfinity) ||
-      (!robot_known && !(robot_assumed < kInfinity))) {
+      (!robot_known && !(robot_assumed < kInfinity)) ||
+      (terms.reaction_is_measured && report_delay_ns < 0)) {
     return;
   }
   const Vec3 towards = towards_human(pair, member.human_is_first, cycle);
@@ -169,6 +172,7 @@ void Separations::write_pair(const SeparatedZone& zone, const Member& member,
       .robot_speed = robot_known ? robot_measured : std::max(robot_assumed, robot_measured),
       .human_age = age_of(out.age_human_ns),
       .robot_age = age_of(out.age_robot_ns),
+      .report_delay = terms.reaction_is_measured ? age_of(report_delay_ns) : 0.0,
       .human_counted = counted_in_bounds(human),
       .robot_counted = counted_in_bounds(robot)};
   out.clearance = member.margins > 0.0 ? rounded_down(pair.lower - member.margins) : pair.lower;

@@ -22,8 +22,9 @@ class Separations {
   void prepare(Report& report) const;
 
   // `report.pairs` are of this tick. Allocates nothing.
+  // `report_delay_ns`: TickTime.
   void write(std::span<const TrackedObject> objects, std::uint64_t cycle,
-             Report& report) const noexcept;
+             std::int64_t report_delay_ns, Report& report) const noexcept;
 
  private:
   struct Member {
@@ -40,7 +41,7 @@ class Separations {
 
   void write_pair(const SeparatedZone& zone, const Member& member, const PairReport& pair,
                   std::span<const TrackedObject> objects, std::uint64_t cycle,
-                  PairSeparation& out) const noexcept;
+                  std::int64_t report_delay_ns, PairSeparation& out) const noexcept;
 
   const Scene& scene_;
   std::vector<SeparatedZone> zones_;

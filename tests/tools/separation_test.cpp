@@ -2,7 +2,11 @@
 // terminal.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <chrono>
 #include <csignal>
+#include <string>
+#include <thread>
 
 #include "tests/monitor/replay/recorded_runs.hpp"
 #include "tests/shared/scratch_folder.hpp"
@@ -90,6 +94,64 @@ TEST(SeparationOverDds, ComesWithEveryTickAndIsUnknownWhenThePosesEnd) {
     whole += separation->pairs._length > 0;
   }
   EXPECT_GT(whole, 2);
+}
+
+// The oracle: S_p of a robot that stands, with the delay and the ages that the same tick states.
+TEST(SeparationOverDds, CountsTheMeasuredDelayAndIsFailSafeBeyondTheLimitAsAReplayIs) {
+  constexpr double kStated = 0.06;              // s
+  constexpr std::int64_t kLimit = 150'000'000;  // ns, below the age limit
+  std::string text = kPersonAndRobot;
+  const auto replace = [&text](const std::string& what, const std::string& by) {
+    text.replace(text.find(what), what.size(), by);
+  };
+  replace("reaction_time_ms: 100", "controller_time_ms: 60");
+  replace("rate_hz: 200", "rate_hz: 200\nresponse_limit_ms: 150");
+  const CellFile cell(text.c_str());
+  const Cell read = cell.cell();
+  const DdsOptions dds = own_dds();
+  const ScratchFolder folder;
+  const std::string run = (folder / "run.mcap").string();
+  Participant client(dds);
+  Poses poses(client, read);
+  ChildProcess daemon(kDaemon, with({cell.path(), "--record", run}, dds_arguments(dds)));
+  for (int i = 0; i < 60; ++i) {
+    poses.send(0.0);
+    std::this_thread::sleep_for(std::chrono::milliseconds(i % 20 == 19 ? 250 : 10));
+  }
+  EXPECT_TRUE(eventually([&] { return daemon.wrote("response-late"); })) << daemon.output();
+  EXPECT_TRUE(eventually([&] { return daemon.wrote("response-back"); })) << daemon.output();
+  daemon.signal(SIGTERM);
+  EXPECT_EQ(daemon.wait(), 0) << daemon.output();
+
+  std::int64_t delay = TickTime::kNotMeasured;
+  int known = 0, beyond = 0, ticks = 0;
+  for (const Kept& message : messages_of(run)) {
+    if (message.kind == TopicKind::kDistances) {
+      delay = decoded<clearance_msg_Distances>(message)->report_delay_ns;
+      if (ticks++ == 0) {
+        EXPECT_EQ(delay, TickTime::kNotMeasured) << "nothing was published yet";
+      }
+    }
+    if (message.kind != TopicKind::kSeparation) continue;
+    const auto separation = decoded<clearance_msg_Separation>(message);
+    const clearance_msg_PairSeparation& pair = separation->pairs._buffer[0];
+    const std::int64_t age = std::max(pair.age_human_ns, pair.age_robot_ns);
+    if (age < 0) continue;
+    if (delay < 0 || age + delay > kLimit) {
+      ++beyond;
+      EXPECT_EQ(pair.validity, 0) << separation->cycle;
+      EXPECT_EQ(separation->zones._buffer[0].scaling, 0.0);
+      continue;
+    }
+    if (pair.validity == 0) continue;  // a first pose gives no velocity
+    ++known;
+    const double time = kStated + 1e-9 * static_cast<double>(delay + pair.age_human_ns);
+    EXPECT_NEAR(pair.protective_distance, 0.1 + 1.6 * time, 1e-9) << separation->cycle;
+  }
+  EXPECT_GT(known, 10);
+  EXPECT_GT(beyond, 10);
+  ChildProcess replay(kReplay, {"check", run, "--compare"});
+  EXPECT_EQ(replay.wait(), 0) << replay.output();
 }
 
 }  // namespace

@@ -21,8 +21,11 @@ namespace clearance {
 // Measures the age of the newest pose when the first report that used it arrives.
 class LatencyMeter {
  public:
-  explicit LatencyMeter(client::Connection& connection)
-      : reports_(connection), thread_([this] { run(); }) {}
+  // `priority`: SCHED_FIFO of the thread that receives; 0: none.
+  LatencyMeter(client::Connection& connection, int priority)
+      : reports_(connection), thread_([this] { run(); }) {
+    if (priority > 0) (void)use_fifo_scheduling(priority, thread_.native_handle());
+  }
   ~LatencyMeter() {
     stop_ = true;
     thread_.join();
@@ -40,6 +43,11 @@ class LatencyMeter {
           counted(all_.count(), "batch", "batches"));
     print(stdout, "         {}  of which: batch sent to tick\n", percentiles(to_tick_));
     print(stdout, "         {}  of which: tick to report received\n", percentiles(from_tick_));
+  }
+
+  [[nodiscard]] std::string histograms() {
+    const std::lock_guard lock(mutex_);
+    return histograms_json({{"sent_to_received", all_}, {"tick_to_received", from_tick_}});
   }
 
  private:

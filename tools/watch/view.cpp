@@ -204,6 +204,11 @@ void add_health(std::vector<Line>& lines, const Feed& feed, const ViewContext& c
       .add("response  ", Style::kDim)
       .add(fmt::format("p50 {:.1f} us  p99.9 {:.1f} us  max {:.1f} us", health->response_p50_us,
                        health->response_p999_us, health->response_max_us));
+  if (health->responses._length > 0) {
+    const clearance_msg_InputResponse& slowest = health->responses._buffer[0];
+    lines.back().add(fmt::format("  (slowest: {})", slowest.input),
+                     health->late_responses > 0 ? Style::kWarning : Style::kPlain);
+  }
   lines.emplace_back(width)
       .add("reports   ", Style::kDim)
       .add(fmt::format("{:.0f} a second  {} missed here", context.reports_a_second, feed.missed()));

@@ -76,6 +76,9 @@ const Mistake kMistakes[] = {
      with_separation_of("@{human: left, stopping_time_ms: 1, stopping_distance: 1, "
                         "intrusion_distance: 1}"),
      "found no key 'reaction_time_ms'; expected it in the separation of a zone"},
+    {"SeparationOfTwoReactions",
+     with_separation_of("{human: left, controller_time_ms: @1, " + kTerms + "}"),
+     "found controller_time_ms beside reaction_time_ms; expected one of them"},
     {"SeparationThatStopsBeforeItBrakes",
      with_separation_of("{human: left, reaction_time_ms: @-1, stopping_time_ms: 1, "
                         "stopping_distance: 1, intrusion_distance: 1}"),

@@ -40,7 +40,7 @@ TEST(CellFile, DefaultsAreThoseOfTheReference) {
 TEST(CellFile, EverySettingArrives) {
   const Cell cell = read_good(
       "name: test\nunits: {length: mm, angle: deg}\nrate_hz: 250\nbudget: 77\nrefresh_s: 3\n"
-      "future_limit_ms: 2.5\n"
+      "future_limit_ms: 2.5\nresponse_limit_ms: 40.5\n"
       "dds: {domain: 42, partition: cell_7, topics: {poses: a/poses, zones: b_zones}}\n"
       "defaults: {margin: 4, max_speed: 1500, age_limit_ms: 12, source: arm}\n"
       "objects:\n"
@@ -58,6 +58,7 @@ TEST(CellFile, EverySettingArrives) {
   EXPECT_EQ(scene.rate_hz, 250.0);
   EXPECT_EQ(scene.budget, 77u);
   EXPECT_EQ(scene.refresh_s, 3.0);
+  EXPECT_EQ(scene.response_limit_ns, 40'500'000);
   EXPECT_EQ(scene.future_limit_ns, 2'500'000);
   EXPECT_EQ(cell.domain, 42u);
   EXPECT_EQ(cell.partition, "cell_7");
@@ -122,6 +123,14 @@ TEST(CellFile, EveryTermOfASeparationArrives) {
   EXPECT_EQ(terms.human_is_first, std::vector<std::uint8_t>{0});
 }
 
+TEST(CellFile, OfTheReactionOfASeparationTheDaemonsPartMayBeMeasured) {
+  const Scene scene = scene_of(
+      with_separation("controller_time_ms: 60, stopping_time_ms: 250, stopping_distance: 125, "
+                      "intrusion_distance: 0"));
+  EXPECT_TRUE(scene.zones.at(0).separation->reaction_is_measured);
+  EXPECT_EQ(scene.zones[0].separation->reaction_time_ns, 60'000'000);
+}
+
 TEST(CellFile, ASeparationHasDefaultsOfTheStandardAndItsPairsArePublished) {
   const Scene scene = scene_of(
       with_separation("reaction_time_ms: 100, stopping_time_ms: 250, stopping_distance: 125, "
@@ -129,6 +138,8 @@ TEST(CellFile, ASeparationHasDefaultsOfTheStandardAndItsPairsArePublished) {
   const Separation& terms = *scene.zones.at(0).separation;
   EXPECT_EQ(terms.human_speed, 1.6);
   EXPECT_FALSE(terms.human_speed_is_measured);
+  EXPECT_FALSE(terms.reaction_is_measured);
+  EXPECT_EQ(scene.response_limit_ns, Scene::kNoLimit);
   EXPECT_EQ(terms.robot_speed, kInfinity);
   EXPECT_EQ(terms.stopping_speed, 0.0);
   EXPECT_EQ(terms.human_uncertainty + terms.robot_uncertainty + terms.robot_acceleration, 0.0);

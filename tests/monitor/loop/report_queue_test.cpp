@@ -57,6 +57,37 @@ TEST(ReportQueue, CarriesTheLineageThatItWasToldLast) {
   }
 }
 
+TEST(ReportQueue, TellsTheLongestDelayOfItsReportsAndOfTheOneThatWaitsLongest) {
+  const Scene scene = published_cell();
+  Monitor monitor(scene);
+  ReportQueue queue(scene, {.reports = 4});
+  const auto report = [&](std::int64_t told_ns) {
+    queue.start({.told_ns = told_ns});
+    queue.report(monitor.tick({}, test::kStart + told_ns), {});
+  };
+  report(100);
+  report(110);
+  EXPECT_EQ(queue.longest_delay(1'000), TickTime::kNotMeasured) << "it has published nothing yet";
+  queue.reports().pop();
+  queue.published(7);
+  EXPECT_EQ(queue.longest_delay(112), 7);
+  EXPECT_EQ(queue.longest_delay(119), 9) << "the second report waits since 110";
+  queue.reports().pop();
+  queue.published(30);
+  EXPECT_EQ(queue.longest_delay(150), 30);
+  EXPECT_EQ(queue.longest_delay(999), TickTime::kNotMeasured) << "nothing since the last call";
+  report(160);
+  queue.reports().pop();
+  queue.published(TickTime::kNotMeasured);
+  EXPECT_EQ(queue.longest_delay(999), TickTime::kNotMeasured) << "a report that was left out";
+  for (int i = 0; i < 20; ++i) {
+    report(1'000 + 10 * i);
+    EXPECT_EQ(queue.longest_delay(1'005 + 10 * i), 5);
+    queue.reports().pop();
+    queue.published(2);
+  }
+}
+
 TEST(ReportQueue, DropsAndCountsWhatFindsItFull) {
   const Scene scene = published_cell();
   Monitor monitor(scene);

@@ -130,6 +130,20 @@ TEST_F(TickPartners, TheFollowerTakesTheLeadInTheTickThatTheLeaderDidNotAnnounce
   EXPECT_EQ(right.used, std::vector{sent});
 }
 
+TEST_F(TickPartners, BothAreToldWhatTheLeaderHasMeasuredOfItsReports) {
+  join();
+  left.ticks.note_report_delay(3 * kTick);
+  right.ticks.note_report_delay(50 * kTick);
+  tick_both();
+  expect_agreement();
+  EXPECT_EQ(left.ticks.time().report_delay_ns, 3 * kTick);
+  EXPECT_EQ(right.ticks.time().report_delay_ns, 3 * kTick);
+  send();
+  right.tick();
+  ASSERT_EQ(right.ticks.standing(), kLeading);
+  EXPECT_EQ(right.ticks.time().report_delay_ns, 50 * kTick) << "the other one is gone";
+}
+
 // The machine of both was busy for 20 ms, and the leader tells its late tick a later time.
 TEST_F(TickPartners, ALateTickOfTheLeaderDoesNotSetTheTimeOfItsSuccessorAhead) {
   join();

@@ -41,6 +41,13 @@ class HealthLogTest : public testing::Test {
     health.inputs._length = static_cast<std::uint32_t>(inputs.size());
     log_.update(health, [] { return std::string(); });
   }
+  void response(std::uint64_t late_responses, clearance_msg_InputResponse* slowest = nullptr) {
+    clearance_msg_Health health{};
+    health.late_responses = late_responses;
+    health.responses._buffer = slowest;
+    health.responses._length = slowest == nullptr ? 0 : 1;
+    log_.update(health, [] { return std::string(); });
+  }
   [[nodiscard]] std::size_t lines(const std::string& code) const {
     return logged_->count("[" + code + "]");
   }
@@ -51,6 +58,24 @@ class HealthLogTest : public testing::Test {
   std::shared_ptr<Logged> logged_ = std::make_shared<Logged>();
   LoggedTo to_{logged_};
 };
+
+TEST_F(HealthLogTest, TellsOnceThatTheResponseIsLateAndOnceThatItIsNotAnyMore) {
+  std::string name = "tracker";
+  clearance_msg_InputResponse slowest{name.data(), 20'000.0, 61'500.0};
+  response(0);
+  EXPECT_EQ(lines("response-late"), 0u);
+  response(5, &slowest);
+  response(12, &slowest);
+  EXPECT_EQ(lines("response-late"), 1u);
+  EXPECT_NE(logged_->text().find("5 ticks in the last second"), std::string::npos);
+  EXPECT_NE(logged_->text().find("tracker, 61.5 ms"), std::string::npos);
+  EXPECT_EQ(lines("response-back"), 0u);
+  response(12);
+  response(12);
+  EXPECT_EQ(lines("response-back"), 1u);
+  response(13);
+  EXPECT_EQ(lines("response-late"), 2u);
+}
 
 TEST_F(HealthLogTest, DoesNotTellAgainWhatAChangedSceneStillHasUnderAnotherNumber) {
   second(first_, "cup", 3);

@@ -191,7 +191,7 @@ TEST(ReportWriter, SaysHowTheDaemonIs) {
   statistics.skipped_cycles = 4;
   for (int i = 0; i < 999; ++i) statistics.tick.add(20'000);
   statistics.tick.add(90'000);
-  statistics.response.add(120'000);
+  statistics.late_responses = 7;
   statistics.rejected[0][static_cast<std::size_t>(Reject::kNotUnit)] = 5;
   statistics.rejected_total[static_cast<std::size_t>(Reject::kNotUnit)] = 5;
   statistics.refused_poses[0].cause = Reject::kNotUnit;
@@ -210,7 +210,7 @@ TEST(ReportWriter, SaysHowTheDaemonIs) {
   EXPECT_EQ(health->skipped_cycles, 4u);
   EXPECT_NEAR(health->tick_p50_us, 20.0, 20.0 / 64);
   EXPECT_EQ(health->tick_max_us, 90.0);
-  EXPECT_EQ(health->response_max_us, 120.0);
+  EXPECT_EQ(health->late_responses, 7u);
   EXPECT_STREQ(health->recording, "run.mcap was deleted");
   EXPECT_EQ(health->recording_missing, 12u);
   ASSERT_EQ(health->rejected._length, 2u);
@@ -224,6 +224,37 @@ TEST(ReportWriter, SaysHowTheDaemonIs) {
   ASSERT_EQ(health->inputs._length, 1u) << "the post is fixed: it has no age";
   EXPECT_STREQ(health->inputs._buffer[0].name, "ball");
   EXPECT_EQ(health->inputs._buffer[0].age_ns, 7'000'000);
+}
+
+// The report was due a while before it was handed over; its inputs were older still.
+TEST(ReportWriter, SaysTheResponseTimeOfEachInputTheSlowestFirst) {
+  Publisher publisher;
+  Participant client(publisher.dds);
+  Reader<clearance_msg_Health> reader(client, publisher.cell);
+  Reader<clearance_msg_Distances> reports(client, publisher.cell);
+  constexpr std::int64_t kDelay = 3'000'000;
+  ReportStart start{.told_ns = SystemClock().monotonic_ns() - kDelay};
+  start.ages_ns.fill(-1);
+  start.ages_ns[2] = 1'000'000;
+  start.ages_ns[4] = 40'000'000;
+  publisher.queue.start(start);
+  publisher.queue.report(publisher.monitor.tick({}, publisher.now += test::kTick), {});
+  ASSERT_NE(reports.next(), nullptr);
+  LoopStatistics statistics(publisher.scene);
+  statistics.sources[2] = SourceName("arm");
+  statistics.sources[4] = SourceName("tracker");
+  publisher.queue.statistics(statistics);
+  const clearance_msg_Health* health = reader.next();
+  ASSERT_NE(health, nullptr);
+  ASSERT_EQ(health->responses._length, 2u);
+  const clearance_msg_InputResponse* const inputs = health->responses._buffer;
+  EXPECT_STREQ(inputs[0].input, "tracker");
+  EXPECT_STREQ(inputs[1].input, "arm");
+  EXPECT_NEAR(inputs[0].max_us - inputs[1].max_us, 39'000.0, 1e-6);
+  EXPECT_GE(inputs[0].max_us, 43'000.0);
+  EXPECT_EQ(inputs[0].max_us, health->response_max_us);
+  const std::int64_t told = publisher.queue.longest_delay(start.told_ns);
+  EXPECT_NEAR(1e-3 * static_cast<double>(told), inputs[0].max_us - 40'000.0, 1e-6);
 }
 
 TEST(Participant, SaysWhichDomainsThereAre) {

@@ -199,8 +199,8 @@ TEST_F(EveryField, OfARecordingIsNamedByItsReplay) {
   ASSERT_TRUE(same.ok()) << same.text();
   EXPECT_EQ(45u, same.compared);
   // These fields are inputs of a tick: a replay with other times is another run.
-  expect_named_by_a_replay<clearance_msg_Distances>(TopicKind::kDistances, 30,
-                                                    {"cycle", "now_ns", "clock_offset_ns"});
+  expect_named_by_a_replay<clearance_msg_Distances>(
+      TopicKind::kDistances, 30, {"cycle", "now_ns", "clock_offset_ns", "report_delay_ns"});
   expect_named_by_a_replay<clearance_msg_ZoneState>(TopicKind::kZones, 1,
                                                     {"zone", "cycle", "active"});
   expect_named_by_a_replay<clearance_msg_Separation>(TopicKind::kSeparation, 30, {"now_ns"});

@@ -9,62 +9,13 @@
 #include "monitor/zones/protective_distance.hpp"
 #include "tests/monitor/replay/report_bytes.hpp"
 #include "tests/monitor/tick/small_cells.hpp"
+#include "tests/monitor/zones/meeting.hpp"
 #include "tests/shared/allocation_count.hpp"
 
 namespace clearance {
 namespace {
 
-constexpr double kHumanRadius = 0.2, kRobotRadius = 0.1;
-
-// A reaction time of 0.1 s, and a deceleration of 4 m/s2, measured at 1 m/s.
-Separation usual_terms() {
-  Separation terms;
-  terms.reaction_time_ns = 100'000'000;
-  terms.stopping_time_ns = 250'000'000;
-  terms.stopping_distance = 0.125;
-  terms.stopping_speed = 1.0;
-  return terms;
-}
-
-// A person (0) and a robot (1) with at most 2 m/s. The person is the first object of the pair.
-struct Meeting {
-  explicit Meeting(Separation terms = usual_terms(), double robot_max_speed = 2.0) {
-    Object robot = test::moving("robot", {test::ball(kRobotRadius)});
-    robot.max_speed = robot_max_speed;
-    scene = test::cell_of({test::moving("person", {test::ball(kHumanRadius)}), robot});
-    scene.pairs[0].publish = true;
-    scene.zones.push_back(test::zone_over(scene, 0.3, 0.4));
-    terms.human_is_first = {1};
-    scene.zones[0].separation = terms;
-  }
-  void begin() { monitor.emplace(scene); }
-
-  // The person is at x on a line from the robot at the origin. Both velocities are along that line.
-  const PairSeparation& tick(double human_x, double human_speed, double robot_speed,
-                             std::int64_t human_age_ns = 0, std::int64_t robot_age_ns = 0) {
-    if (!monitor) begin();
-    now += test::kTick;
-    PoseSample human = test::sample(0, test::at(human_x, 0, 0), now - human_age_ns);
-    human.has_twist = true;
-    human.twist.linear = {human_speed, 0, 0};
-    PoseSample robot = test::sample(1, test::at(0, 0, 0), now - robot_age_ns);
-    robot.has_twist = true;
-    robot.twist.linear = {robot_speed, 0, 0};
-    robot.twist.angular = robot_turn;
-    const PoseSample both[] = {human, robot};
-    return (report = &monitor->tick(both, now))->separated_pairs[0];
-  }
-  // No input arrives for this time.
-  const PairSeparation& wait(std::int64_t ns) {
-    return (report = &monitor->tick({}, now += ns))->separated_pairs[0];
-  }
-
-  Scene scene;
-  std::optional<Monitor> monitor;
-  const Report* report = nullptr;
-  Vec3 robot_turn = Vec3::Zero();
-  std::int64_t now = test::kStart;
-};
+using test::Meeting, test::usual_terms, test::kHumanRadius, test::kRobotRadius;
 
 TEST(Separations, APersonWhoIsKnownNotToBeThereLimitsNothing) {
   Meeting cell;

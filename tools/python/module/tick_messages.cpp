@@ -80,6 +80,12 @@ py::dict zones_of(const ZoneStates& zones, const py::list& names) {
   return all;
 }
 
+void put_response(py::dict& item, const clearance_msg_InputResponse& one) {
+  item["input"] = py::str(one.input);
+  item["p50_us"] = one.p50_us;
+  item["max_us"] = one.max_us;
+}
+
 py::dict health_of(const clearance_msg_Health& m) {
   py::dict all;
   all["daemon"] = m.daemon;
@@ -125,6 +131,8 @@ py::dict health_of(const clearance_msg_Health& m) {
     item["cut_poses"] = one.cut_poses;
     item["age_ns"] = one.age_ns;
   });
+  all["late_responses"] = m.late_responses;
+  all["responses"] = dicts_of(m.responses, put_response);
   all["recording"] = py::str(m.recording);
   all["recording_missing"] = m.recording_missing;
   all["notes"] = dicts_of(m.notes, [](py::dict& item, const auto& one) {

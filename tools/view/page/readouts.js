@@ -57,7 +57,7 @@ function healthRows({ report, health }) {
   if (!health) return rows;
   rows.push(["Tick", `p50 ${micro(health.tick_p50_us)}, p99.9 ${micro(health.tick_p999_us)}, max ${micro(health.tick_max_us)}, last second ${micro(health.tick_second_max_us)}`]);
   rows.push(["Wake-up", `p50 ${micro(health.wakeup_p50_us)}, p99.9 ${micro(health.wakeup_p999_us)}, max ${micro(health.wakeup_max_us)}`]);
-  rows.push(["Response", `p50 ${micro(health.response_p50_us)}, p99.9 ${micro(health.response_p999_us)}, max ${micro(health.response_max_us)}`]);
+  rows.push(["Response", `p50 ${micro(health.response_p50_us)}, p99.9 ${micro(health.response_p999_us)}, max ${micro(health.response_max_us)}${health.responses?.length ? `, slowest: ${health.responses[0].input}` : ""}`, health.late_responses > 0]);
   rows.push(["Overruns", `${health.overruns}, ${counted(health.skipped_cycles, "cycle")} skipped, ${counted(health.dropped_reports, "report")} dropped`, health.overruns + health.skipped_cycles + health.dropped_reports > 0]);
   for (const { source, batches, lost_batches } of health.sources) rows.push(["Source", `${source}: ${counted(batches, "batch", "batches")}, ${lost_batches} lost`, lost_batches > 0]);
   for (const { name, age_ns, contradicted } of health.inputs.filter(({ stale }) => stale).slice(0, 6)) {
