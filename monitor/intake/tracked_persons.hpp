@@ -1,4 +1,4 @@
-// Who stands for which tracked body: the changes of a cell by a list of bodies.
+// The changes of a cell by a list of tracked bodies: which person of the cell has which body.
 #pragma once
 
 #include <cstddef>

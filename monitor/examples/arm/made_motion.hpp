@@ -1,4 +1,4 @@
-// A motion that is made up, for a demonstration without anybody's recording.
+// A motion that is made up, for a demonstration that needs no recording.
 #pragma once
 
 #include <cstdint>

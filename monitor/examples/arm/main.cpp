@@ -173,7 +173,7 @@ int change_tools(const Cell& cell, client::Connection& connection, Arguments& ar
 }
 
 // A person walks up to the arm and reaches out, leaves, and comes again.
-int meet_people(const Cell& cell, client::Connection& connection, Arguments& arguments,
+int work_beside_people(const Cell& cell, client::Connection& connection, Arguments& arguments,
                 StopSignal& signal) {
   const people::RunResult result =
       people::run(cell, connection, arguments.people, [&signal] { return !signal.wait(0); });
@@ -271,7 +271,7 @@ int run(int argc, char** argv, StopSignal& signal) {
   if (line.chosen == "avoid") return avoid_twice(*cell, connection, arguments, signal);
   if (line.chosen == "pick") return pick_twice(connection, arguments, signal);
   if (line.chosen == "stops") return stop_thrice(*cell, connection, arguments, signal);
-  if (line.chosen == "people") return meet_people(*cell, connection, arguments, signal);
+  if (line.chosen == "people") return work_beside_people(*cell, connection, arguments, signal);
   if (line.chosen == "tools") return change_tools(*cell, connection, arguments, signal);
   return ask_each(connection, arguments, signal);
 }

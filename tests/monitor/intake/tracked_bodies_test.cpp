@@ -129,7 +129,7 @@ TEST_F(TrackedBodiesOfIntake, AreToldWhenThereAreMoreThanTheCellHasPersons) {
   EXPECT_EQ(heard_.told(lines::kTooManyBodies.code), 1u);
 }
 
-// Also a tracker that was never heard: nothing says then that no person is there.
+// A tracker that was never heard is silent, too: nothing says then that no person is there.
 TEST_F(TrackedBodiesOfIntake, AreUnknownAfterASecondWithoutAList) {
   heard_.settle();
   heard_.pass(TrackedBodies::kSilentNs - 1);
