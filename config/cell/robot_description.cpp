@@ -106,7 +106,8 @@ std::optional<RobotDescription> read_description(const DescriptionKeys& keys,
   description.urdf = *urdf;
   std::vector<std::string> by_visual;
   for (const YamlNode* each : keys.visual_as_collision) by_visual.push_back(each->text);
-  auto read = read_urdf(*urdf, by_visual);
+  auto read =
+      read_urdf(*urdf, by_visual, keys.person.node != nullptr ? UrdfOf::kSkeleton : UrdfOf::kRobot);
   if (const auto* faults = std::get_if<UrdfFaults>(&read)) {
     refuse_robot(*keys.urdf, *faults, diagnostics);
     return std::nullopt;

@@ -253,6 +253,11 @@ bool RobotReader::read(const YamlNode& node, RobotList& list) {
   list.variables.insert(list.variables.end(), variables.begin(), variables.end());
   for (RobotJoint& joint : robot.joints) joint.variable += first;
   set_plausible_motion(robot, list.variables);
+  // Near a posture where two axes of a shoulder are one, as with arms down, its angles may leap: by
+  // a turn in a tenth of a millisecond.
+  constexpr double kLeapOfPerson = 1e5;  // rad/s
+  for (std::uint32_t i = first; i < list.variables.size(); ++i)
+    if (robot.person && !robot.is_of_base(i)) list.variables[i].unstated_speed = kLeapOfPerson;
   if (keys.joints_node != nullptr) {
     refuse_positions_outside(*keys.joints_node, std::span(list.variables).subspan(first),
                              diagnostics_);

@@ -162,6 +162,7 @@ std::optional<std::string> make_person(double stature, const std::string& person
   for (UrdfLink& link : skeleton.links) {
     strip(link.name);
     link.collisions.clear();
+    link.has_collision = link.has_visual = false;
   }
   for (UrdfJoint& joint : skeleton.joints)
     for (std::string* name : {&joint.name, &joint.parent, &joint.child}) strip(*name);

@@ -83,26 +83,6 @@ Mat3 turn(char axis, double degrees) {
   return matrix;
 }
 
-std::vector<Vec3> places_of(const Bvh& motion, std::size_t frame) {
-  std::vector<Vec3> places;
-  std::vector<Mat3> turns;
-  for (std::size_t i = 0; i < motion.joints.size(); ++i) {
-    const BvhJoint& joint = motion.joints[i];
-    Vec3 offset = joint.offset;
-    Mat3 rotation = Mat3::Identity();
-    for (std::size_t c = 0; c < joint.channels.size(); ++c) {
-      const double value = motion.frames[frame][joint.first_channel + c];
-      const char channel = joint.channels[c];
-      if (channel >= 'x') offset[channel - 'x'] += value;
-      if (channel < 'x') rotation = rotation * turn(channel, value);
-    }
-    const bool is_root = i == 0;
-    places.push_back(is_root ? offset : Vec3(places[joint.parent] + turns[joint.parent] * offset));
-    turns.push_back(is_root ? rotation : Mat3(turns[joint.parent] * rotation));
-  }
-  return places;
-}
-
 }  // namespace
 
 Bvh read_bvh(std::string_view text) {
@@ -124,6 +104,26 @@ Bvh read_bvh(std::string_view text) {
   for (std::vector<double>& frame : motion.frames)
     for (std::size_t c = 0; c < channels; ++c) frame.push_back(words.number());
   return motion;
+}
+
+std::vector<Vec3> places_of(const Bvh& motion, std::size_t frame) {
+  std::vector<Vec3> places;
+  std::vector<Mat3> turns;
+  for (std::size_t i = 0; i < motion.joints.size(); ++i) {
+    const BvhJoint& joint = motion.joints[i];
+    Vec3 offset = joint.offset;
+    Mat3 rotation = Mat3::Identity();
+    for (std::size_t c = 0; c < joint.channels.size(); ++c) {
+      const double value = motion.frames[frame][joint.first_channel + c];
+      const char channel = joint.channels[c];
+      if (channel >= 'x') offset[channel - 'x'] += value;
+      if (channel < 'x') rotation = rotation * turn(channel, value);
+    }
+    const bool is_root = i == 0;
+    places.push_back(is_root ? offset : Vec3(places[joint.parent] + turns[joint.parent] * offset));
+    turns.push_back(is_root ? rotation : Mat3(turns[joint.parent] * rotation));
+  }
+  return places;
 }
 
 Keypoints keypoints_of(const Bvh& motion, std::size_t frame, double metres) {

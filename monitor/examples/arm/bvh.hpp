@@ -31,6 +31,9 @@ struct Bvh {
 // Throws std::invalid_argument, with what was found, if the text is no BVH file.
 [[nodiscard]] Bvh read_bvh(std::string_view text);
 
+// Returns where the joints are, in the frame and the unit of the file.
+[[nodiscard]] std::vector<Vec3> places_of(const Bvh& motion, std::size_t frame);
+
 // Where the joints of a person are, in the world: z up, and x forward in the rest pose.
 struct Keypoints {
   Vec3 neck, head_top;

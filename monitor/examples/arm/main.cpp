@@ -174,7 +174,7 @@ int change_tools(const Cell& cell, client::Connection& connection, Arguments& ar
 
 // A person walks up to the arm and reaches out, leaves, and comes again.
 int work_beside_people(const Cell& cell, client::Connection& connection, Arguments& arguments,
-                StopSignal& signal) {
+                       StopSignal& signal) {
   const people::RunResult result =
       people::run(cell, connection, arguments.people, [&signal] { return !signal.wait(0); });
   if (!result.heard) {

@@ -110,7 +110,10 @@ Skeleton PersonFit::fit(const Keypoints& person) {
   body.col(2) = up;
   body.col(1) = across(to_left, up).normalized();
   body.col(0) = body.col(1).cross(up);
-  skeleton.world_from_body = {hips, Eigen::Quaterniond(body).normalized()};
+  Eigen::Quaterniond turn = Eigen::Quaterniond(body).normalized();
+  if (turn.dot(last_turn_) < 0.0) turn.coeffs() = -turn.coeffs();
+  last_turn_ = turn;
+  skeleton.world_from_body = {hips, turn};
   // Rx(roll) Ry(-pitch) turns z to the head.
   const Vec3 head = direction(person.neck, person.head_top, body);
   skeleton.angles = {{"waist", 0.0},

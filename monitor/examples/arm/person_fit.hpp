@@ -29,6 +29,7 @@ class PersonFit {
   void fit_arm(std::size_t side, const Keypoints& person, const Mat3& world_from_body,
                Skeleton& skeleton);
   std::array<Arm, 2> arms_;
+  Eigen::Quaterniond last_turn_ = Eigen::Quaterniond::Identity();
 };
 
 }  // namespace clearance::people

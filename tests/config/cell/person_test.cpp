@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <string>
+#include <utility>
 #include <variant>
 #include <vector>
 
@@ -160,8 +161,8 @@ TEST(Person, IsRequiredWhereBodiesAreTracked) {
 }
 
 TEST(Person, GetsAndLosesItsBodyByAChange) {
-  const auto opened = CellEditor::open(cell_with(kAnna), "cell.yaml");
-  CellEditor editor = std::get<CellEditor>(opened);
+  auto opened = CellEditor::open(cell_with(kAnna), "cell.yaml");
+  CellEditor editor = std::get<CellEditor>(std::move(opened));
   const auto edit = [&](const SetAbsent& change) {
     auto result = editor.edit(std::vector<CellChange>{change});
     const auto* refusal = std::get_if<EditRefusal>(&result);
