@@ -191,6 +191,14 @@ void RobotReader::account_for_rounding(const RobotList& list) {
   }
 }
 
+// Near a posture where two axes of a shoulder are one, as with arms down, its angles may leap.
+void let_angles_leap(const Robot& person, std::uint32_t first,
+                     std::vector<JointVariable>& variables) {
+  constexpr double kLeap = 1e5;  // rad/s: a turn in a tenth of a millisecond
+  for (std::uint32_t i = first; i < variables.size(); ++i)
+    if (!person.is_of_base(i)) variables[i].unstated_speed = kLeap;
+}
+
 bool RobotReader::read(const YamlNode& node, RobotList& list) {
   const RobotKeys keys =
       read_robot_keys(node, defaults_, {file_.parent_path(), revision_.root()}, quantities_);
@@ -253,11 +261,7 @@ bool RobotReader::read(const YamlNode& node, RobotList& list) {
   list.variables.insert(list.variables.end(), variables.begin(), variables.end());
   for (RobotJoint& joint : robot.joints) joint.variable += first;
   set_plausible_motion(robot, list.variables);
-  // Near a posture where two axes of a shoulder are one, as with arms down, its angles may leap: by
-  // a turn in a tenth of a millisecond.
-  constexpr double kLeapOfPerson = 1e5;  // rad/s
-  for (std::uint32_t i = first; i < list.variables.size(); ++i)
-    if (robot.person && !robot.is_of_base(i)) list.variables[i].unstated_speed = kLeapOfPerson;
+  if (robot.person) let_angles_leap(robot, first, list.variables);
   if (keys.joints_node != nullptr) {
     refuse_positions_outside(*keys.joints_node, std::span(list.variables).subspan(first),
                              diagnostics_);

@@ -150,7 +150,7 @@ struct Robot {
   std::vector<RobotJoint> joints;
   // Of a tool, kg; infinity: not stated. Of what is attached, Object::mass counts.
   double mass = std::numeric_limits<double>::infinity();
-  RobotStops stopping = {};        // stated
+  RobotStops stopping = {};  // stated
   std::optional<Person> person = {};
   std::vector<std::string> notes;  // for the log: what was left out, and why
 
