@@ -191,12 +191,17 @@ void RobotReader::account_for_rounding(const RobotList& list) {
   }
 }
 
-// Near a posture where two axes of a shoulder are one, as with arms down, its angles may leap.
-void let_angles_leap(const Robot& person, std::uint32_t first,
-                     std::vector<JointVariable>& variables) {
-  constexpr double kLeap = 1e5;  // rad/s: a turn in a tenth of a millisecond
-  for (std::uint32_t i = first; i < variables.size(); ++i)
-    if (!person.is_of_base(i)) variables[i].unstated_speed = kLeap;
+// Near a posture where two axes of a shoulder are one, as with arms down, its angles may leap. A
+// body turns and runs faster than the base of a robot.
+void move_as_people(const Robot& person, std::uint32_t first,
+                    std::vector<JointVariable>& variables) {
+  constexpr double kLeap = 1e5;                // rad/s: a turn in a tenth of a millisecond
+  constexpr double kRun = 12.0, kTurn = 30.0;  // m/s, rad/s
+  constexpr std::uint32_t kFirstOfQuaternion = 3;
+  for (std::uint32_t i = first; i < variables.size(); ++i) {
+    const bool is_place = i - variables[i].first_of_joint < kFirstOfQuaternion;
+    variables[i].unstated_speed = !person.is_of_base(i) ? kLeap : is_place ? kRun : 0.5 * kTurn;
+  }
 }
 
 bool RobotReader::read(const YamlNode& node, RobotList& list) {
@@ -261,7 +266,7 @@ bool RobotReader::read(const YamlNode& node, RobotList& list) {
   list.variables.insert(list.variables.end(), variables.begin(), variables.end());
   for (RobotJoint& joint : robot.joints) joint.variable += first;
   set_plausible_motion(robot, list.variables);
-  if (robot.person) let_angles_leap(robot, first, list.variables);
+  if (robot.person) move_as_people(robot, first, list.variables);
   if (keys.joints_node != nullptr) {
     refuse_positions_outside(*keys.joints_node, std::span(list.variables).subspan(first),
                              diagnostics_);

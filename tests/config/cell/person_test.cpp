@@ -22,7 +22,7 @@ using test::mistake_at;
 using testing::HasSubstr;
 using testing::UnorderedElementsAre;
 
-std::string cell_with(const std::string& robot, const std::string& ros = "world_frame: map") {
+std::string person_cell(const std::string& robot, const std::string& ros = "world_frame: map") {
   return "name: test\nunits: {length: mm, angle: deg}\nros2: {" + ros + "}\nrobots:\n  - " + robot +
          "\nobjects:\n  - {name: post, max_speed: 1000, sphere: {radius: 100}}\n"
          "pairs:\n  - {between: [people, post]}\n"
@@ -38,7 +38,7 @@ const Object& limb(const Scene& scene, const std::string& name) {
 }
 
 TEST(Person, HasTwelveLimbsWithItsErrorThatGroupsNameAndABaseOnTheFrameOfItsBody) {
-  const Scene scene = scene_of(cell_with(kAnna));
+  const Scene scene = scene_of(person_cell(kAnna));
   std::vector<std::string> names;
   for (const Object& object : scene.objects) {
     if (object.name == "post") continue;
@@ -58,8 +58,8 @@ TEST(Person, HasTwelveLimbsWithItsErrorThatGroupsNameAndABaseOnTheFrameOfItsBody
 TEST(Person, HasLimbsOfItsStature) {
   for (const double stature : {1.3, 1.75, 2.1}) {
     const Scene scene =
-        scene_of(cell_with("{name: anna, person: {stature: " + std::to_string(1000.0 * stature) +
-                           ", error: 0}, groups: [people]}"));
+        scene_of(person_cell("{name: anna, person: {stature: " + std::to_string(1000.0 * stature) +
+                             ", error: 0}, groups: [people]}"));
     const auto span = [&](const std::string& name) {
       const auto& anchors = limb(scene, name).parts[0].shape.anchors;
       return (anchors.front() - anchors.back()).norm();
@@ -73,7 +73,7 @@ TEST(Person, HasLimbsOfItsStature) {
 }
 
 TEST(Person, ApproachesWithTheSpeedOfItsLimbsUnlessTheZoneStatesOne) {
-  const Scene scene = scene_of(cell_with(kAnna));
+  const Scene scene = scene_of(person_cell(kAnna));
   EXPECT_FALSE(scene.zones[0].separation->human_speed);
   for (const Object& object : scene.objects) {
     const bool is_arm = object.name.find("shoulder") != std::string::npos ||
@@ -85,7 +85,7 @@ TEST(Person, ApproachesWithTheSpeedOfItsLimbsUnlessTheZoneStatesOne) {
 // A tracker's id is in the names that its messages have, and in no name that the cell's rules use.
 TEST(Person, HasTheIdInItsJointsAndItsFrameButNotInItsLinks) {
   const Scene scene = scene_of(
-      cell_with("{name: anna, person: {stature: 1700, error: 60, id: b7}, groups: [people]}"));
+      person_cell("{name: anna, person: {stature: 1700, error: 60, id: b7}, groups: [people]}"));
   EXPECT_EQ(scene.robots[0].base.frame, "body_b7");
   EXPECT_EQ(limb(scene, "l_elbow_anna").name, "l_elbow_anna");
   EXPECT_NE(std::ranges::find(scene.variables, "l_elbow_b7", &JointVariable::name),
@@ -123,7 +123,7 @@ TEST(Person, HasTheLengthsOfTheTrackersSkeleton) {
   const std::string robot =
       "{name: anna, urdf: human.urdf, person: {stature: 1700, error: 60}, groups: [people]}";
   test::write_text(folder / "human.urdf", urdf(""));
-  const Scene scene = scene_of(cell_with(robot), folder / "cell.yaml");
+  const Scene scene = scene_of(person_cell(robot), folder / "cell.yaml");
   const auto& anchors = limb(scene, "r_shoulder_anna").parts[0].shape.anchors;
   EXPECT_NEAR((anchors.front() - anchors.back()).norm(), 2.0 * 0.186 * 1.7, 1e-5);
   for (const JointVariable& variable : scene.variables) {
@@ -131,15 +131,15 @@ TEST(Person, HasTheLengthsOfTheTrackersSkeleton) {
     EXPECT_EQ(variable.upper, kInfinity) << variable.name;
   }
   test::write_text(folder / "human.urdf", urdf("l_wrist"));
-  EXPECT_THAT(errors_of(cell_with(robot), folder / "cell.yaml"), HasSubstr("'l_wrist'"));
+  EXPECT_THAT(errors_of(person_cell(robot), folder / "cell.yaml"), HasSubstr("'l_wrist'"));
   test::write_text(folder / "human.urdf", "<robot name=\"arm\"><link name=\"base\"/></robot>");
-  EXPECT_THAT(errors_of(cell_with(robot), folder / "cell.yaml"), HasSubstr("'body_ID'"));
+  EXPECT_THAT(errors_of(person_cell(robot), folder / "cell.yaml"), HasSubstr("'body_ID'"));
 }
 
 TEST(Person, IsRefusedWithoutAStatureOrWithAnImplausibleOne) {
   const auto errors = [](const std::string& person, const std::string& more = "") {
     return errors_of(
-        cell_with("{name: anna, person: {" + person + "}, groups: [people]" + more + "}"));
+        person_cell("{name: anna, person: {" + person + "}, groups: [people]" + more + "}"));
   };
   EXPECT_THAT(errors("error: 60"), HasSubstr("stature"));
   EXPECT_THAT(errors("stature: 1700"), HasSubstr("error"));
@@ -147,12 +147,12 @@ TEST(Person, IsRefusedWithoutAStatureOrWithAnImplausibleOne) {
     EXPECT_THAT(errors(std::string("error: 60, stature: ") + stature), HasSubstr("stature"));
   EXPECT_THAT(errors("error: 60, stature: 1700, id: b/7"), HasSubstr("'b/7'"));
   EXPECT_THAT(errors("error: 60, stature: 1700", ", prefix: a_"), HasSubstr("'prefix'"));
-  EXPECT_THAT(errors_of(cell_with(kAnna, "markers: false")), HasSubstr("world_frame"));
+  EXPECT_THAT(errors_of(person_cell(kAnna, "markers: false")), HasSubstr("world_frame"));
 }
 
 TEST(Person, IsRequiredWhereBodiesAreTracked) {
   const std::string tracked = "world_frame: map, tracked_bodies: true";
-  EXPECT_EQ(scene_of(cell_with(kAnna, tracked)).robots.size(), 1u);
+  EXPECT_EQ(scene_of(person_cell(kAnna, tracked)).robots.size(), 1u);
   const std::string none =
       "name: test\nunits: {length: m, angle: rad}\nros2: {tracked_bodies: true}\nobjects:\n"
       "  - {name: a, sphere: {radius: 1}}\n  - {name: b, sphere: {radius: 1}}\n"
@@ -161,7 +161,7 @@ TEST(Person, IsRequiredWhereBodiesAreTracked) {
 }
 
 TEST(Person, GetsAndLosesItsBodyByAChange) {
-  auto opened = CellEditor::open(cell_with(kAnna), "cell.yaml");
+  auto opened = CellEditor::open(person_cell(kAnna), "cell.yaml");
   CellEditor editor = std::get<CellEditor>(std::move(opened));
   const auto edit = [&](const SetAbsent& change) {
     auto result = editor.edit(std::vector<CellChange>{change});
