@@ -244,8 +244,8 @@ class Cameras {
   }
 
  private:
-  static std::vector<Person> people_of(const Cell& cell, const Arguments& arguments) {
-    std::vector<Person> people;
+  static std::vector<WalkingPerson> people_of(const Cell& cell, const Arguments& arguments) {
+    std::vector<WalkingPerson> people;
     for (const std::string& text : arguments.people) {
       people.emplace_back(std::get<WalkingPath>(read_walking_path(text)), arguments.person_speed);
       const double fastest = people.back().max_speed();

@@ -169,7 +169,7 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   refuse_same_names(list, diagnostics_);
   refuse_too_many_sources(list, robots.variables, robots_node, diagnostics_);
   GroupIndex group_index(list, diagnostics_);
-  if (ros_ != nullptr && cell.ros.moveit.any())
+  if (ros_ != nullptr && cell.ros.moveit.adds_objects())
     group_index.declare(cell.ros.moveit.group, *ros_, "found MoveIt's messages");
   PairList pairs;
   pairs.complete = false;
@@ -229,6 +229,11 @@ void CellReader::read(const YamlNode& root, Cell& cell) {
   cell.plc = read_plc(map, file_.parent_path(), cell.scene, diagnostics_);
   map.refuse_unknown_keys();
   refuse_frames_without_a_world(root, cell);
+  const auto is_person = [](const Robot& robot) { return robot.person.has_value(); };
+  if (!cell.ros.moveit.tracked_bodies.empty() && !std::ranges::any_of(cell.scene.robots, is_person))
+    diagnostics_.add(*ros_,
+                     "found tracked_bodies without persons; expected robots with 'person', "
+                     "one for each body that may be there at a time");
   if (diagnostics_.empty() && !options_.share.empty()) select_share(root, cell);
   if (diagnostics_.empty() && !meshes_.has_put_off()) refuse_small_budget(root, cell);
 }

@@ -155,7 +155,7 @@ void ErrorReader::read(const YamlNode& node) {
         quantities_.length(*shapes, "the largest error of a shape", kNotNegative).value_or(0.0);
     scene_.added_shape_error = error;
     for (Object& object : list_.objects)
-      if (!object.is_seen()) object.shape_error = error;
+      if (!object.is_seen()) object.shape_error = std::max(object.shape_error, error);
   }
   if (const YamlNode* except = map.optional("except")) {
     for (const YamlNode& item : read_list(*except, "exceptions", diagnostics_))

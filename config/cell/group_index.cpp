@@ -156,7 +156,7 @@ void GroupIndex::refuse_unused_groups() const {
     if (entry.is_group && entry.used) used.push_back(name);
   }
   for (const auto& [name, entry] : entries_) {
-    if (!entry.is_group || entry.used) continue;
+    if (!entry.is_group || entry.used || list_.optional_groups.contains(name)) continue;
     if (entry.declared != nullptr) {
       diagnostics_.add(
           *entry.declared,

@@ -5,6 +5,7 @@
 #include <list>
 #include <map>
 #include <optional>
+#include <set>
 #include <string>
 #include <utility>
 #include <vector>
@@ -65,7 +66,9 @@ struct ObjectList {
   std::vector<PairKey> left_out;  // ascending: of attached objects, and `rigid`; never watched
   std::vector<PairKey> touching;  // those of them that may touch by a rule of `touch`
   std::vector<PairKey> rigid =
-      {};                   // ascending: of what stands on one body, but for links of one robot
+      {};  // ascending: of what stands on one body, but for links of one robot
+  // The names of robots with groups of their own: a rule may name them, and none has to.
+  std::set<std::string> optional_groups = {};
   bool names_known = true;  // false: a name or group could not be read, so others may seem unknown
 };
 

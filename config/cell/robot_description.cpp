@@ -9,6 +9,7 @@
 #include "config/text/file_bytes.hpp"
 #include "config/text/sentences.hpp"
 #include "config/text/spelling.hpp"
+#include "config/urdf/person.hpp"
 #include "config/urdf/robot_exceptions.hpp"
 #include "config/yaml/scalar.hpp"
 
@@ -51,12 +52,44 @@ void refuse_other_links(const YamlNode& name, const UrdfRobot& robot, Diagnostic
                         did_you_mean(name.text, names)));
 }
 
+// Makes the tree of joints. Returns nothing after a diagnostic.
+std::optional<RobotDescription> complete(const DescriptionKeys& keys, RobotDescription& description,
+                                         Diagnostics& diagnostics) {
+  const DescribedPerson& person = keys.person;
+  const YamlNode& at = keys.urdf != nullptr ? *keys.urdf : *person.node;
+  if (person.node != nullptr) {
+    const std::string& id = person.id.empty() ? person.name : person.id;
+    if (auto missing = make_person(person.stature, person.name, id, description.robot)) {
+      diagnostics.add(
+          at, fmt::format("found {}; expected the skeleton of ROS4HRI (REP-155)", *missing));
+      return std::nullopt;
+    }
+  }
+  auto model = robot_model(description.robot, description.urdf, keys.prefix);
+  if (const auto* faults = std::get_if<UrdfFaults>(&model)) {
+    refuse_robot(at, *faults, diagnostics);
+    return std::nullopt;
+  }
+  description.model = std::get<RobotModel>(std::move(model));
+  return std::move(description);
+}
+
+// Without a URDF of the tracker, the lengths of limbs follow from the stature.
+std::optional<RobotDescription> read_own_skeleton(const DescriptionKeys& keys,
+                                                  Diagnostics& diagnostics) {
+  RobotDescription description;
+  description.robot = skeleton_of(keys.person.stature);
+  return complete(keys, description, diagnostics);
+}
+
 }  // namespace
 
 // Both files are read even if the first has faults, so that one run reports all.
 std::optional<RobotDescription> read_description(const DescriptionKeys& keys,
                                                  Diagnostics& diagnostics, Revision& revision) {
-  if (keys.urdf == nullptr) return std::nullopt;
+  if (keys.urdf == nullptr) {
+    return keys.person.node == nullptr ? std::nullopt : read_own_skeleton(keys, diagnostics);
+  }
   RobotDescription description;
   const auto urdf = find_robot_file(*keys.urdf, keys.files, diagnostics, revision);
   const auto srdf = keys.srdf == nullptr
@@ -73,7 +106,8 @@ std::optional<RobotDescription> read_description(const DescriptionKeys& keys,
   description.urdf = *urdf;
   std::vector<std::string> by_visual;
   for (const YamlNode* each : keys.visual_as_collision) by_visual.push_back(each->text);
-  auto read = read_urdf(*urdf, by_visual);
+  auto read =
+      read_urdf(*urdf, by_visual, keys.person.node != nullptr ? UrdfOf::kSkeleton : UrdfOf::kRobot);
   if (const auto* faults = std::get_if<UrdfFaults>(&read)) {
     refuse_robot(*keys.urdf, *faults, diagnostics);
     return std::nullopt;
@@ -85,12 +119,8 @@ std::optional<RobotDescription> read_description(const DescriptionKeys& keys,
     refuse_robot(*keys.srdf, faults_of(*description.srdf, *srdf, description.robot, *urdf),
                  diagnostics);
   }
-  auto model = robot_model(description.robot, *urdf, keys.prefix);
-  if (const auto* faults = std::get_if<UrdfFaults>(&model))
-    refuse_robot(*keys.urdf, *faults, diagnostics);
-  if (diagnostics.count() != before) return std::nullopt;
-  description.model = std::get<RobotModel>(std::move(model));
-  return description;
+  auto completed = complete(keys, description, diagnostics);
+  return diagnostics.count() == before ? std::move(completed) : std::nullopt;
 }
 
 }  // namespace clearance

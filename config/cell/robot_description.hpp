@@ -14,13 +14,22 @@
 
 namespace clearance {
 
+// The person that a robot's description is of.
+struct DescribedPerson {
+  const YamlNode* node = nullptr;  // null: it is of a robot
+  std::string name;                // of the robot that stands for the person
+  double stature = 0.0;            // m
+  std::string id;                  // of the body; as Person::id
+};
+
 // The names of the files in a cell, and their places.
 struct DescriptionKeys {
-  const YamlNode* urdf = nullptr;  // null: missing, which has been reported
+  const YamlNode* urdf = nullptr;  // null: missing, which has been reported, or a person's
   const YamlNode* srdf = nullptr;  // null: there is none
   RobotFiles files;                // of the cell
   std::string prefix;
   std::vector<const YamlNode*> visual_as_collision;  // names of links
+  DescribedPerson person = {};
 };
 
 // Finds the file that a key of a robot names. Returns nothing after a diagnostic. The file's bytes

@@ -16,36 +16,17 @@
 #include "config/cell/joint_reader.hpp"
 #include "config/cell/link_parts.hpp"
 #include "config/cell/robot_description.hpp"
+#include "config/cell/robot_keys.hpp"
 #include "config/cell/robot_membership.hpp"
-#include "config/cell/ros_reader.hpp"
 #include "config/cell/stopping_reader.hpp"
 #include "config/scene/chain_rounding.hpp"
 #include "config/scene/plausible_joints.hpp"
+#include "config/urdf/person.hpp"
 #include "config/urdf/robot_exceptions.hpp"
 #include "config/urdf/robot_files.hpp"
 
 namespace clearance {
 namespace {
-
-// The values of a robot's own keys.
-struct RobotKeys {
-  const YamlNode* name_node = nullptr;
-  const YamlNode* urdf_node = nullptr;
-  const YamlNode* srdf_node = nullptr;
-  const YamlNode* combined_node = nullptr;  // srdf_with
-  const YamlNode* base_node = nullptr;
-  const YamlNode* attached_node = nullptr;
-  const YamlNode* joints_node = nullptr;
-  const YamlNode* stopping_node = nullptr;
-  std::vector<const YamlNode*> visual_as_collision;  // names of links
-  std::string name, prefix, joint_states;
-  RosStamps stamps = RosStamps::kMessage;
-  std::vector<std::pair<std::string, std::filesystem::path>> packages;
-  ObjectDefaults limits;
-  std::int64_t frozen_limit_ns = 0;  // of all joints
-  bool absent = false;
-  double mass = kInfinity;  // kg
-};
 
 class RobotReader {
  public:
@@ -65,11 +46,8 @@ class RobotReader {
   [[nodiscard]] PosesAtRest take_at_rest() noexcept { return std::move(at_rest_); }
 
  private:
-  RobotKeys read_keys(const YamlNode& node);
-  void read_visual_links(const YamlNode& node, RobotKeys& keys);
+  void refuse_same_name(const YamlNode& node, const RobotKeys& keys);
   void refuse_without_speed(const RobotKeys& keys, const RobotModel& model);
-  void read_packages(const YamlNode& node, RobotKeys& keys);
-  void read_joint_topic(MapReader& map, RobotKeys& keys);
   bool has_names_of_its_own(const RobotKeys& keys, const RobotModel& model);
   void add_links(const RobotKeys& keys, const RobotDescription& description,
                  const Membership& membership, Robot& robot);
@@ -90,105 +68,23 @@ class RobotReader {
   std::vector<Membership> memberships_;      // of all robots that could be read
 };
 
-void RobotReader::read_packages(const YamlNode& node, RobotKeys& keys) {
-  if (node.kind != YamlNode::Kind::kMap) {
-    diagnostics_.add(node, fmt::format("found {}; expected packages and their directories: {{NAME: "
-                                       "DIRECTORY}}",
-                                       describe(node)));
-  }
-  for (const YamlEntry& entry : node.entries) {
-    const auto name = read_name(entry.key, "a package's name", diagnostics_);
-    const auto path = read_text(entry.value, "the directory of a package", diagnostics_);
-    if (name && path)
-      keys.packages.emplace_back(*name, path_in(revision_.root(), file_.parent_path(), *path));
-  }
-}
-
-void RobotReader::read_visual_links(const YamlNode& node, RobotKeys& keys) {
-  for (const YamlNode& item : read_list(node, "links whose visual shapes count", diagnostics_)) {
-    if (read_name(item, "a link's name, without the prefix", diagnostics_))
-      keys.visual_as_collision.push_back(&item);
-  }
-}
-
 // A negative limit is one that was not known.
 void RobotReader::refuse_without_speed(const RobotKeys& keys, const RobotModel& model) {
   for (const auto& [name, fault] : model.without_speed) {
     const auto variable = std::ranges::find(model.variables, name, &JointVariable::name);
     if (variable != model.variables.end() && !std::isfinite(variable->max_speed))
-      refuse_robot(*keys.urdf_node, {fault}, diagnostics_);
+      refuse_robot(keys.description(), {fault}, diagnostics_);
   }
 }
 
-// Reads the robot's joint-state topic on ROS 2, and whether its stamps or its times of sending
-// count.
-void RobotReader::read_joint_topic(MapReader& map, RobotKeys& keys) {
-  if (const YamlNode* node = map.optional("joint_states")) {
-    const auto topic = read_text(*node, "a topic of ROS 2", diagnostics_);
-    if (topic && !topic->starts_with('/')) {
-      diagnostics_.add(*node, fmt::format("found '{}'; expected a topic of ROS 2 with its "
-                                          "namespace: /joint_states, /left/joint_states",
-                                          *topic));
-    }
-    keys.joint_states = topic.value_or("");
-  }
-  if (const YamlNode* node = map.optional("stamps")) keys.stamps = read_stamps(*node, diagnostics_);
-}
-
-RobotKeys RobotReader::read_keys(const YamlNode& node) {
-  RobotKeys keys;
-  keys.limits = defaults_;
-  MapReader map(node, "a robot", diagnostics_);
-  keys.name_node = map.required("name");
-  keys.urdf_node = map.required("urdf");
-  keys.srdf_node = map.optional("srdf");
-  keys.combined_node = map.optional("srdf_with");
-  keys.base_node = map.optional("base");
-  keys.attached_node = map.optional("attached");
-  if (keys.base_node != nullptr && keys.attached_node != nullptr) {
-    diagnostics_.add(*keys.attached_node,
-                     "found 'attached' of a robot with a 'base'; expected one of the two");
-  }
-  if (const YamlNode* absent = map.optional("absent"))
-    keys.absent = read_flag(*absent, diagnostics_).value_or(false);
-  keys.mass = read_mass(map, diagnostics_);
-  keys.joints_node = map.optional("joints");
-  keys.stopping_node = map.optional("stopping");
-  read_joint_topic(map, keys);
-  if (keys.name_node != nullptr) {
-    keys.name = read_name(*keys.name_node, "a robot's name", diagnostics_).value_or("");
-  }
-  if (const YamlNode* prefix = map.optional("prefix")) {
-    keys.prefix = read_text(*prefix, "what the names of links and joints begin with", diagnostics_)
-                      .value_or("");
-  }
-  if (const YamlNode* packages = map.optional("packages")) read_packages(*packages, keys);
-  if (const YamlNode* links = map.optional("visual_as_collision")) read_visual_links(*links, keys);
-  if (const YamlNode* margin = map.optional("margin")) {
-    keys.limits.margin =
-        quantities_.length(*margin, "the margin", kNotNegative).value_or(defaults_.margin);
-  }
-  if (const YamlNode* age = map.optional("age_limit_ms")) {
-    keys.limits.age_limit_ns =
-        quantities_.milliseconds(*age, "the age limit", kPositive).value_or(defaults_.age_limit_ns);
-  }
-  if (const YamlNode* frozen = map.optional("frozen_limit_ms")) {
-    keys.frozen_limit_ns =
-        quantities_.milliseconds(*frozen, "the frozen limit", kPositive).value_or(0);
-  }
-  if (const YamlNode* source = map.optional("source")) {
-    keys.limits.source = read_source(*source, diagnostics_).value_or("");
-  }
-  read_part_limits(map, quantities_, keys.limits.mesh_limits);
-  map.refuse_unknown_keys();
-  if (keys.name.empty()) return keys;
+void RobotReader::refuse_same_name(const YamlNode& node, const RobotKeys& keys) {
+  if (keys.name.empty()) return;
   if (const auto [same, is_new] = names_.emplace(keys.name, node.line); !is_new) {
     diagnostics_.add(*keys.name_node,
                      fmt::format("found the robot name '{}' again; expected it once (first in line "
                                  "{})",
                                  keys.name, same->second));
   }
-  return keys;
 }
 
 // Poses and joint states could not distinguish two links or joints of one name.
@@ -215,7 +111,7 @@ void RobotReader::add_links(const RobotKeys& keys, const RobotDescription& descr
                             const Membership& membership, Robot& robot) {
   std::map<std::string, const UrdfLink*> written;
   for (const UrdfLink& link : description.robot.links) written[keys.prefix + link.name] = &link;
-  LinkParts parts({description.urdf, keys.packages, revision_.root()}, *keys.urdf_node, shapes_,
+  LinkParts parts({description.urdf, keys.packages, revision_.root()}, keys.description(), shapes_,
                   keys.limits.mesh_limits, diagnostics_);
   for (std::uint32_t i = 0; i < robot.links.size(); ++i) {
     RobotLink& link = robot.links[i];
@@ -238,6 +134,10 @@ void RobotReader::add_links(const RobotKeys& keys, const RobotDescription& descr
     object.groups = membership.groups;
     object.absent = membership.absent;
     object.margin = keys.limits.margin;
+    if (keys.person_node != nullptr) {
+      object.shape_error = keys.person.error;
+      object.approach_speed = approach_speed_of(link.name);
+    }
     if (const double error = parts.add(*description_of->second, object); error > 0.0) {
       objects_.mesh_errors[object.name] = error;
     }
@@ -291,14 +191,31 @@ void RobotReader::account_for_rounding(const RobotList& list) {
   }
 }
 
+// Near a posture where two axes of a shoulder are one, as with arms down, its angles may leap. A
+// body turns and runs faster than the base of a robot.
+void move_as_people(const Robot& person, std::uint32_t first,
+                    std::vector<JointVariable>& variables) {
+  constexpr double kLeap = 1e5;                // rad/s: a turn in a tenth of a millisecond
+  constexpr double kRun = 12.0, kTurn = 30.0;  // m/s, rad/s
+  constexpr std::uint32_t kFirstOfQuaternion = 3;
+  for (std::uint32_t i = first; i < variables.size(); ++i) {
+    const bool is_place = i - variables[i].first_of_joint < kFirstOfQuaternion;
+    variables[i].unstated_speed = !person.is_of_base(i) ? kLeap : is_place ? kRun : 0.5 * kTurn;
+  }
+}
+
 bool RobotReader::read(const YamlNode& node, RobotList& list) {
-  RobotKeys keys = read_keys(node);
-  auto description = read_description({.urdf = keys.urdf_node,
-                                       .srdf = keys.srdf_node,
-                                       .files = {file_, keys.packages, revision_.root()},
-                                       .prefix = keys.prefix,
-                                       .visual_as_collision = keys.visual_as_collision},
-                                      diagnostics_, revision_);
+  const RobotKeys keys =
+      read_robot_keys(node, defaults_, {file_.parent_path(), revision_.root()}, quantities_);
+  refuse_same_name(node, keys);
+  auto description = read_description(
+      {.urdf = keys.urdf_node,
+       .srdf = keys.srdf_node,
+       .files = {file_, keys.packages, revision_.root()},
+       .prefix = keys.prefix,
+       .visual_as_collision = keys.visual_as_collision,
+       .person = {keys.person_node, keys.name, keys.person.stature, keys.person.id}},
+      diagnostics_, revision_);
   StatedBase stated;
   if (keys.base_node != nullptr) {
     stated = read_robot_base(*keys.base_node, list.robots, at_rest_, objects_, quantities_);
@@ -306,6 +223,9 @@ bool RobotReader::read(const YamlNode& node, RobotList& list) {
   if (keys.attached_node != nullptr) {
     stated.base =
         read_robot_attachment(*keys.attached_node, list.robots, at_rest_, objects_, quantities_);
+  }
+  if (keys.person_node != nullptr && keys.base_node == nullptr) {
+    stated.base.frame = "body_" + (keys.person.id.empty() ? keys.name : keys.person.id);
   }
   const RobotBase& base = stated.base;
   Robot robot;
@@ -319,12 +239,17 @@ bool RobotReader::read(const YamlNode& node, RobotList& list) {
   robot.joint_states = keys.joint_states;
   robot.stamps = keys.stamps;
   robot.mass = keys.mass;
+  if (keys.person_node != nullptr) robot.person = Person{keys.person.id};
   if (!description || keys.name.empty()) return false;
   if (!has_names_of_its_own(keys, {robot, description->model.variables})) return false;
-  const Membership membership =
+  Membership membership =
       keys.attached_node == nullptr
           ? Membership{.groups = {keys.name}, .carrier = {}, .absent = keys.absent}
           : membership_of({keys.name, keys.absent}, base, list.robots, memberships_, objects_);
+  if (!keys.groups.empty()) objects_.optional_groups.insert(keys.name);
+  for (const std::string& group : keys.groups)
+    if (std::ranges::find(membership.groups, group) == membership.groups.end())
+      membership.groups.push_back(group);
   const auto first = static_cast<std::uint32_t>(list.variables.size());
   std::vector<JointVariable>& variables = description->model.variables;
   for (JointVariable& variable : variables) {
@@ -341,6 +266,7 @@ bool RobotReader::read(const YamlNode& node, RobotList& list) {
   list.variables.insert(list.variables.end(), variables.begin(), variables.end());
   for (RobotJoint& joint : robot.joints) joint.variable += first;
   set_plausible_motion(robot, list.variables);
+  if (robot.person) move_as_people(robot, first, list.variables);
   if (keys.joints_node != nullptr) {
     refuse_positions_outside(*keys.joints_node, std::span(list.variables).subspan(first),
                              diagnostics_);

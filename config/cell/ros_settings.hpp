@@ -38,16 +38,18 @@ inline constexpr std::array<RosOutput, 6> kRosOutputs = {{
 inline constexpr std::array<std::string_view, 6> kRosMessages = {
     "catalogue", "distances", "zones", "health", "separation", "gradients"};
 
-// MoveIt's messages that keep the scene. Topics by their names in ROS 2; an empty one is not read.
+// The messages that keep the scene: MoveIt's, and the ids of ROS4HRI's bodies, which stand for the
+// persons of the cell. Topics by their names in ROS 2; an empty one is not read.
 struct MoveItInputs {
-  std::string collision_object, attached_collision_object, planning_scene;
+  std::string collision_object, attached_collision_object, planning_scene, tracked_bodies;
   // The group of the objects that MoveIt adds. A rule for pairs has to name it.
   std::string group = "moveit";
 
-  [[nodiscard]] bool any() const noexcept {
+  [[nodiscard]] bool adds_objects() const noexcept {
     return !collision_object.empty() || !attached_collision_object.empty() ||
            !planning_scene.empty();
   }
+  [[nodiscard]] bool any() const noexcept { return adds_objects() || !tracked_bodies.empty(); }
 };
 
 // One row an input: its key in a cell, and its topic where the cell says `true`.
@@ -56,11 +58,12 @@ struct MoveItInput {
   std::string MoveItInputs::*topic;
   std::string_view standard_topic;
 };
-inline constexpr std::array<MoveItInput, 3> kMoveItInputs = {{
+inline constexpr std::array<MoveItInput, 4> kMoveItInputs = {{
     {"collision_object", &MoveItInputs::collision_object, "/collision_object"},
     {"attached_collision_object", &MoveItInputs::attached_collision_object,
      "/attached_collision_object"},
     {"planning_scene", &MoveItInputs::planning_scene, "/planning_scene"},
+    {"tracked_bodies", &MoveItInputs::tracked_bodies, "/humans/bodies/tracked"},
 }};
 
 // Topics of trajectory_msgs/JointTrajectory, in ROS 2's spelling: each motion is asked about. The

@@ -57,8 +57,7 @@ std::optional<std::size_t> SeparationReader::read_human_side(const Between& betw
 // A person who stands may walk in the next second, so the measured speed needs an acceleration.
 void SeparationReader::read_human(Separation& separation) {
   if (const YamlNode* speed = map_.optional("human_speed")) {
-    separation.human_speed =
-        quantities_.speed(*speed, "the speed of people").value_or(separation.human_speed);
+    separation.human_speed = quantities_.speed(*speed, "the speed of people");
   }
   const YamlNode* measured = map_.optional("human_speed_measured");
   const YamlNode* acceleration = map_.optional("human_acceleration");

@@ -42,6 +42,9 @@ struct RemoveObject {
 struct SetAbsent {
   std::string object;
   bool absent = true;
+  // Of a person: the id of the body that stands for it from now on, as in /humans/bodies. Empty: no
+  // tracker says where the person is. Nothing: the id stays.
+  std::optional<std::string> id = {};
 };
 
 // Attaches an object to a link or to another object. It loses all keys that say where it is or

@@ -197,9 +197,12 @@ Fault ChangeMaker::operator()(const RemoveObject& change) {
 
 Fault ChangeMaker::operator()(const SetAbsent& change) {
   const bool is_robot = std::holds_alternative<Found>(named("robots", change.object));
+  const char* const list = is_robot ? "robots" : "objects";
+  const auto set_id = [&](YamlNode& node) { return set_body(*change.id, change.object, node); };
+  Fault fault = change.id ? edit_entry(list, change.object, set_id) : std::nullopt;
+  if (fault) return fault;
   return set_value(change.object, "absent",
-                   change.absent ? std::optional(flag_node(true)) : std::nullopt,
-                   is_robot ? "robots" : "objects");
+                   change.absent ? std::optional(flag_node(true)) : std::nullopt, list);
 }
 
 // Erases the keys that say where an object is, and which poses count.

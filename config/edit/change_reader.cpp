@@ -45,6 +45,7 @@ class ChangeKeys {
     name("object", change.object);
     if (const YamlNode* absent = map_.optional("absent"))
       change.absent = read_flag(*absent, diagnostics_).value_or(true);
+    if (const YamlNode* id = map_.optional("id")) change.id = read_text(*id, "an id", diagnostics_);
   }
   void read(Attach& change) {
     name("object", change.object);

@@ -70,4 +70,20 @@ std::optional<ChangeFault> move_robot(const DetachRobot& change, YamlNode pose, 
   return std::nullopt;
 }
 
+std::optional<ChangeFault> set_body(const std::string& id, const std::string& person,
+                                    YamlNode& node) {
+  YamlNode* stated = find(node, "person");
+  if (stated == nullptr) {
+    return ChangeFault{"id", fmt::format("found '{}', which is no person; expected a robot with "
+                                         "'person'",
+                                         person)};
+  }
+  if (id.empty()) {
+    erase(*stated, "id");
+  } else {
+    set(*stated, "id", text_node(id));
+  }
+  return std::nullopt;
+}
+
 }  // namespace clearance

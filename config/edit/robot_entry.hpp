@@ -2,6 +2,7 @@
 #pragma once
 
 #include <optional>
+#include <string>
 
 #include "config/edit/cell_change.hpp"
 #include "config/edit/change_document.hpp"
@@ -15,5 +16,9 @@ namespace clearance {
                                                     YamlNode& node);
 [[nodiscard]] std::optional<ChangeFault> move_robot(const DetachRobot& change, YamlNode pose,
                                                     YamlNode& node);
+
+// Sets the id of the body that stands for a person; empty: removes it.
+[[nodiscard]] std::optional<ChangeFault> set_body(const std::string& id, const std::string& person,
+                                                  YamlNode& node);
 
 }  // namespace clearance

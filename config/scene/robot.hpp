@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -126,6 +127,13 @@ struct RobotBase {
   Pose frame_from_root;
 };
 
+// A person by the skeleton of ROS4HRI. The objects of its links say whether it is there.
+struct Person {
+  // The body's name in /humans/bodies, which the names of its joints and of its frame end with.
+  // Empty: the person is there, and no tracker says where.
+  std::string id;
+};
+
 struct Robot {
   std::string name;
   std::string prefix;  // its names begin with it in this cell
@@ -142,7 +150,8 @@ struct Robot {
   std::vector<RobotJoint> joints;
   // Of a tool, kg; infinity: not stated. Of what is attached, Object::mass counts.
   double mass = std::numeric_limits<double>::infinity();
-  RobotStops stopping = {};        // stated
+  RobotStops stopping = {};  // stated
+  std::optional<Person> person = {};
   std::vector<std::string> notes;  // for the log: what was left out, and why
 
   // Tells whether the variable belongs to the base, which follows a frame of tf.

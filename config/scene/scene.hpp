@@ -56,9 +56,12 @@ struct Object {
   double shape_error = 0.0;   // stated, m: no point of the true body is farther from its parts
   RestingOn resting_on = {};  // of a fixed object that is attached to another
   double mass = kInfinity;    // kg; infinity: not stated
-  bool may_jump = false;      // its poses may jump, as a simulation's do
-  bool absent = false;        // known not to be there when the monitor starts (Monitor::set_absent)
-  bool is_read = true;        // false: no pair of this share of a cell depends on it (select_share)
+  // Of a person, m/s: the speed of this part of the body towards a robot, whatever it does
+  // (ISO 13855). Zones with `separation` count it unless they state one.
+  double approach_speed = 1.6;
+  bool may_jump = false;  // its poses may jump, as a simulation's do
+  bool absent = false;    // known not to be there when the monitor starts (Monitor::set_absent)
+  bool is_read = true;    // false: no pair of this share of a cell depends on it (select_share)
   // The only source whose poses are used; empty: the first that sends some, while it does.
   std::string source;
   std::string frame;  // of tf: its pose is the object's; empty: none

@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "core/convex_body.hpp"
@@ -12,8 +13,9 @@ namespace clearance {
 
 // All in SI units. Times count from the tick; the measured ages of poses are added.
 struct Separation {
-  // m/s, towards the robot: the speed of a person whose speed is unknown (ISO 13855).
-  double human_speed = 1.6;
+  // m/s, towards the robot: the speed of a person whose speed is unknown. Nothing: that of the part
+  // of the body, Object::approach_speed.
+  std::optional<double> human_speed = {};
   // If set, the person's measured speed is used while it is known, with this acceleration, m/s2.
   bool human_speed_is_measured = false;
   double human_acceleration = 0.0;

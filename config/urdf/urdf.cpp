@@ -20,7 +20,7 @@ namespace {
 using tinyxml2::XMLElement;
 
 // A robot without shapes would give a cell that watches nothing, and is refused.
-void read_links(XmlReader& xml, std::span<const std::string> visual_as_collision,
+void read_links(XmlReader& xml, std::span<const std::string> visual_as_collision, UrdfOf of,
                 UrdfRobot& robot) {
   std::set<std::string> names;
   bool any_shape = false;
@@ -44,7 +44,7 @@ void read_links(XmlReader& xml, std::span<const std::string> visual_as_collision
     }
     robot.links.push_back(std::move(link));
   }
-  if (!any_shape) {
+  if (!any_shape && of == UrdfOf::kRobot) {
     xml.report(
         *xml.root(),
         "found no link with a collision shape; expected a robot to keep apart (a cell can take "
@@ -173,13 +173,14 @@ void sort_by_place(UrdfFaults& faults) {
 }
 
 std::variant<UrdfRobot, UrdfFaults> read_urdf(const std::filesystem::path& file,
-                                              std::span<const std::string> visual_as_collision) {
+                                              std::span<const std::string> visual_as_collision,
+                                              UrdfOf of) {
   XmlReader xml(file);
   UrdfRobot robot;
   if (xml.root() != nullptr) {
     xml.read_version();
     robot.name = xml.attribute(*xml.root(), "name");
-    read_links(xml, visual_as_collision, robot);
+    read_links(xml, visual_as_collision, of, robot);
     read_joints(xml, robot);
   }
   return value_or_faults(std::move(robot), xml, urdf_format());

@@ -2,6 +2,7 @@
 // 1.0 to 1.2, and the pairs that SRDF disables.
 #pragma once
 
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -128,8 +129,11 @@ void sort_by_place(UrdfFaults& faults);
 // Plain URDF: xacro has to be expanded before. Checks that joints join links that exist into trees.
 // Links of `visual_as_collision` without a collision shape get their visual shapes as such. What
 // could change geometry and is not read is refused; all other words that are not read are noted.
+// A robot without any shape is refused, and the skeleton of a person is not.
+enum class UrdfOf : std::uint8_t { kRobot, kSkeleton };
 [[nodiscard]] std::variant<UrdfRobot, UrdfFaults> read_urdf(
-    const std::filesystem::path& file, std::span<const std::string> visual_as_collision = {});
+    const std::filesystem::path& file, std::span<const std::string> visual_as_collision = {},
+    UrdfOf of = UrdfOf::kRobot);
 
 // Reads the pairs of an SRDF.
 [[nodiscard]] std::variant<Srdf, UrdfFaults> read_srdf(const std::filesystem::path& file);

@@ -77,6 +77,7 @@ class MotionSearch {
   struct SeparatedPair {
     std::uint32_t zone = 0, pair = 0;  // Scene::zones; PartPairs
     double margins = 0.0;              // m
+    double human_speed = 0.0;          // m/s
   };
   // A stretch of the profile.
   struct Piece {

@@ -15,10 +15,11 @@ namespace {
 // Factors nearer to each other than this are not told apart.
 constexpr double kLeastFactor = 1e-4;
 
-// The largest factor that a pair at `distance`, m, admits, rounded down. `speed`: of the robot as
-// the motion is timed, m/s.
-double factor_of(const Separation& terms, double distance, double speed) noexcept {
-  const Approach approach{.human_speed = terms.human_speed};
+// The largest factor that a pair at `distance`, m, admits, rounded down. `human_speed`: of the
+// person; `speed`: of the robot as the motion is timed, m/s.
+double factor_of(const Separation& terms, double human_speed, double distance,
+                 double speed) noexcept {
+  const Approach approach{.human_speed = human_speed};
   const double limit = largest_speed(terms, approach, distance);
   if (limit == kInfinity) return kInfinity;
   if (limit > 0.0) return speed > 0.0 ? rounded_down(limit / speed) : kInfinity;
@@ -38,12 +39,14 @@ void MotionSearch::collect_separated() {
       const std::uint32_t robot = human_is_first ? objects.second : objects.first;
       const double margins =
           rounded_up(scene_.objects[objects.first].margin + scene_.objects[objects.second].margin);
+      const Object& human = scene_.objects[human_is_first ? objects.first : objects.second];
+      const double human_speed = zone.separation->human_speed.value_or(human.approach_speed);
       for (std::uint32_t p = 0; p < pairs_.pairs().size(); ++p) {
         std::uint32_t first = 0, second = 0;
         note_pair(p, first, second);
         const std::uint32_t tip = pairs_.bundles()[pairs_.pairs()[p].bundle].object_tip;
         if (first == objects.first && second == objects.second && tip == robot)
-          separated_.push_back({z, p, margins});
+          separated_.push_back({z, p, margins, human_speed});
       }
     }
   }
@@ -166,17 +169,20 @@ void MotionSearch::scale(const Stretch& stretch, std::size_t count, double known
     const double fastest = largest_tip_speed(motion, radius);
     const double apart = gap(at, separated.pair, kInfinity);
     const double loss = rounded_up(motion.moved + motion.error + approach.moved);
-    double lower = factor_of(terms, rounded_down(apart - loss - separated.margins), fastest);
+    double lower = factor_of(terms, separated.human_speed,
+                             rounded_down(apart - loss - separated.margins), fastest);
     if (lower < enough()) {
       const PairAtMiddle found = query(at, separated.pair);
       const double over =
           lower_over(found, at.base, at.tip, bundle.keeps_direction, motion, approach, kInfinity);
-      lower = std::max(lower, factor_of(terms, rounded_down(over - separated.margins), fastest));
+      lower = std::max(lower, factor_of(terms, separated.human_speed,
+                                        rounded_down(over - separated.margins), fastest));
       const double slowest = largest_tip_speed({.twist = motion.twist, .nearing = {}}, radius);
       // With stated errors, no larger factor is certain.
       const double now =
           rounded_up(found.upper + motion.error - 2.0 * bundle.model_error - separated.margins);
-      const double upper = rounded_up(rounded_up(factor_of(terms, now, (1.0 - 0x1p-40) * slowest)));
+      const double upper = rounded_up(
+          rounded_up(factor_of(terms, separated.human_speed, now, (1.0 - 0x1p-40) * slowest)));
       if (upper < scaling.factor_above) {
         scaling.factor_above = upper;
         scaling.time = middle;

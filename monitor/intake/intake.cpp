@@ -9,6 +9,7 @@
 #include "monitor/inputs/source_numbers.hpp"
 #include "monitor/intake/own_batches.hpp"
 #include "monitor/intake/ros_clock.hpp"
+#include "monitor/intake/tracked_bodies.hpp"
 
 namespace clearance {
 
@@ -37,6 +38,7 @@ Intake::Intake(const Cell& cell, IntakeOptions options, Use use)
   joint_states_ = add<RosJointStates>(cell.scene, joint_states, *this);
   transforms_ = add<RosTransforms>(cell, from, *this, options_.use_sensor);
   add<MoveItMessages>(cell, options_.use_scene, *this);
+  add<TrackedBodies>(cell, options_.use_scene, *this);
   add<SensorMessages>(cell, options_.use_sensor, *this);
 }
 

@@ -46,7 +46,8 @@ std::optional<Decoder::Wanted> RosJointStates::wants(const TopicName& topic) {
   const auto known = std::ranges::find(topics_, topic.name, &Topic::name);
   const auto port = static_cast<std::uint32_t>(known - topics_.begin());
   if (known != topics_.end()) return Wanted{port, &kRosJointState};
-  if (topics_.size() == kMostTopics) {
+  const auto held = std::ranges::count(topics_, false, &Topic::is_left);
+  if (static_cast<std::size_t>(held) >= kMostTopics) {
     if (!std::exchange(too_many_said_, true)) {
       out_.tell(News(lines::kTooManyTopics, topic.name, kMostTopics));
     }
@@ -71,15 +72,17 @@ std::vector<NamedTopic> RosJointStates::named() const {
 
 void RosJointStates::keep(std::span<const std::uint64_t> writers) {
   for (Topic& topic : topics_) {
-    std::erase_if(topic.writers, [&](const auto& writer) {
+    const auto gone = std::erase_if(topic.writers, [&](const auto& writer) {
       return !std::ranges::binary_search(writers, writer.first);
     });
+    topic.is_left = topic.writers.empty() && (topic.is_left || gone > 0);
   }
 }
 
 // Uses the lowest number that no other writer of the topic has. A restarted writer thus gets its
 // former name again.
 RosJointStates::Writer& RosJointStates::writer_of(Topic& topic, std::uint64_t handle) {
+  topic.is_left = false;
   const auto known = topic.writers.find(handle);
   if (known != topic.writers.end()) return known->second;
   std::size_t number = 1;

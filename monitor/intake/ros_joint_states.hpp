@@ -58,6 +58,7 @@ class RosJointStates final : public Decoder {
     std::string name;
     JointNames names;
     std::map<std::uint64_t, Writer> writers;
+    bool is_left = false;  // it had writers, and none is left: it has no place among kMostTopics
   };
 
   [[nodiscard]] bool is_wanted(const TopicName& topic) const;

@@ -9,6 +9,7 @@
 
 #include "monitor/inputs/checksum.hpp"
 #include "monitor/intake/from_wire.hpp"
+#include "monitor/intake/tracked_persons.hpp"
 
 namespace clearance::moveit {
 namespace {
@@ -52,9 +53,11 @@ void SceneKeeper::say_refused(std::string sentence, Work& work) {
 
 SceneKeeper::Work SceneKeeper::take(const RawScene& message, const Cell& cell,
                                     const PresentPoses& poses) {
-  const KnownScene scene = known_scene(cell);
   before_ = translator_;
   incomplete_.reset();
+  if (message.type == RawScene::Type::kTrackedBodies)
+    return {.changes = changes_by_bodies(message.cdr, message.bytes, cell.scene)};
+  const KnownScene scene = known_scene(cell);
   std::optional<Translation> done;
   switch (message.type) {
     case RawScene::Type::kCollisionObject:
@@ -68,6 +71,8 @@ SceneKeeper::Work SceneKeeper::take(const RawScene& message, const Cell& cell,
     case RawScene::Type::kPlanningScene:
       done = translated<moveit_msgs_msg_dds__PlanningScene_>(message, decoder_, translator_, scene,
                                                              poses);
+      break;
+    case RawScene::Type::kTrackedBodies:
       break;
   }
   Work work;
@@ -112,6 +117,8 @@ std::vector<CollisionObject> SceneKeeper::objects_of(const RawScene& message) {
         for (AttachedCollisionObject& each : scene->attached)
           objects.push_back(std::move(each.object));
       }
+      break;
+    case RawScene::Type::kTrackedBodies:
       break;
   }
   return objects;

@@ -1,4 +1,5 @@
-// Makes changes of the cell from the bytes of MoveIt's messages, and says what it cannot use.
+// Makes changes of the cell from the bytes of MoveIt's messages, and of lists of tracked bodies. It
+// says what it cannot use.
 #pragma once
 
 #include <cstddef>
@@ -18,7 +19,12 @@ namespace clearance::moveit {
 
 // A message as it came: decoding it may take long, and has no place in a thread that takes poses.
 struct RawScene {
-  enum class Type : std::uint8_t { kCollisionObject, kAttachedCollisionObject, kPlanningScene };
+  enum class Type : std::uint8_t {
+    kCollisionObject,
+    kAttachedCollisionObject,
+    kPlanningScene,
+    kTrackedBodies,  // without bytes: its topic is silent
+  };
   Type type = Type::kPlanningScene;
   std::string topic = {};
   std::vector<std::byte> cdr = {};

@@ -34,6 +34,7 @@ void visit_fields(const Visit& visit, Message& m, Of& c) {
   } else if constexpr (std::is_same_v<Change, SetAbsent>) {
     visit("object", m.object, c.object, kName);
     visit("absent", m.absent, c.absent);
+    visit("id", m.id, c.id, kMayBeEmpty);
   } else if constexpr (std::is_same_v<Change, Attach>) {
     visit("object", m.object, c.object, kName);
     visit("to", m.to, c.to, kName);

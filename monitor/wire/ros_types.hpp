@@ -47,6 +47,12 @@ topic_descriptor<rosgraph_msgs_msg_dds__Clock_>() noexcept {
   return rosgraph_msgs_msg_dds__Clock__desc;
 }
 
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<hri_msgs_msg_dds__IdsList_>() noexcept {
+  return hri_msgs_msg_dds__IdsList__desc;
+}
+
 // The delivery of a ROS 2 topic, and what its endpoints say of its type in their USER_DATA (since
 // Iron: type description hashes, REP-2011).
 struct RosType {
@@ -85,6 +91,10 @@ inline constexpr RosType kRosDiagnostics{
 inline constexpr RosType kRosFloat64{
     &std_msgs_msg_dds__Float64__desc,
     "typehash=RIHS01_705ba9c3d1a09df43737eb67095534de36fd426c0587779bda2bc51fe790182a;", false, 10};
+
+inline constexpr RosType kRosIdsList{
+    &hri_msgs_msg_dds__IdsList__desc,
+    "typehash=RIHS01_7e0812d1ac945c98fd3e393568d581ad0ab567f37b24eff633eab778c1bfe62d;", false, 16};
 
 // The name of a ROS 2 topic in DDS: "rt/joint_states" is /joint_states.
 [[nodiscard]] inline std::string ros_dds_name(const std::string& topic) { return "rt" + topic; }

@@ -168,7 +168,7 @@ void Separations::write_pair(const SeparatedZone& zone, const Member& member,
   const double robot_measured =
       robot.twist_known ? speed_towards(robot, towards, on_robot, robot_limit) : 0.0;
   const Approach assumed{
-      .human_speed = terms.human_speed,
+      .human_speed = terms.human_speed.value_or(scene_.objects[member.human].approach_speed),
       .robot_speed = robot_known ? robot_measured : std::max(robot_assumed, robot_measured),
       .human_age = age_of(out.age_human_ns),
       .robot_age = age_of(out.age_robot_ns),

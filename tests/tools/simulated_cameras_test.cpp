@@ -247,9 +247,9 @@ TEST_F(SimulatedCamerasTest, AndTheDaemonsBoundsAreNeverAboveWhatCamerasOnTfSaw)
   judge(moved.path());
 }
 
-TEST(Person, MovesWithoutLeapsAndNoFasterThanItSays) {
+TEST(WalkingPerson, MovesWithoutLeapsAndNoFasterThanItSays) {
   const auto path = read_walking_path("2,0:1,0.5:0.8,-0.4,0.1");
-  Person person(std::get<WalkingPath>(path), 0.7);
+  WalkingPerson person(std::get<WalkingPath>(path), 0.7);
   constexpr double kStep_s = 1e-3;
   const double most = person.max_speed() * kStep_s * (1.0 + 1e-6);
   std::vector<Vec3> before;
@@ -257,7 +257,7 @@ TEST(Person, MovesWithoutLeapsAndNoFasterThanItSays) {
   for (double t = 0.0; t < 1.2 * person.period_s(); t += kStep_s) {
     person.place(t);
     std::vector<Vec3> ends;
-    for (const Person::Limb& limb : person.limbs()) {
+    for (const WalkingPerson::Limb& limb : person.limbs()) {
       for (const Vertex& vertex : limb.shape.vertices) {
         // The farthest points of the rounding, too.
         for (const double side : {-1.0, 1.0})
@@ -277,7 +277,7 @@ TEST(Person, MovesWithoutLeapsAndNoFasterThanItSays) {
   EXPECT_GT(fastest, 0.5 * person.max_speed());
 }
 
-TEST(Person, RefusesPathsThatLeadNowhere) {
+TEST(WalkingPerson, RefusesPathsThatLeadNowhere) {
   for (const char* const text :
        {"", "1,2", "1,2:1,2", "1:2", "1,2:x,3", "1,2:3,4,5,6", "1,2:1e9,0"})
     EXPECT_TRUE(std::holds_alternative<std::string>(read_walking_path(text))) << text;
@@ -328,7 +328,7 @@ TEST(SimulatedWorld, HasTheFixedBodiesTheRobotAndThePeople) {
                          for (std::uint32_t i = 0; i < joints.size(); ++i) joints[i].variable = i;
                          joints[0].position = t_s;
                        },
-                       {Person(path, 0.5)});
+                       {WalkingPerson(path, 0.5)});
   world.place(0.7);
   std::map<std::uint32_t, std::size_t> counts;
   for (const rendering::PlacedBody& body : world.bodies()) ++counts[body.label];

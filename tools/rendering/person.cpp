@@ -73,7 +73,7 @@ std::variant<WalkingPath, std::string> read_walking_path(const std::string& text
   return path;
 }
 
-Person::Person(WalkingPath path, double speed) : speed_(speed) {
+WalkingPerson::WalkingPerson(WalkingPath path, double speed) : speed_(speed) {
   for (const Hanging& limb : kLimbs) {
     const Vec3 end(0.0, 0.0, -limb.length);
     limbs_.push_back({std::get<ConvexBody>(segment(Vec3::Zero(), end, limb.radius)), {}});
@@ -89,14 +89,14 @@ Person::Person(WalkingPath path, double speed) : speed_(speed) {
   place(0.0);
 }
 
-void Person::add(Action action, double length_s, const Vec3& from, const Vec3& to, double heading,
-                 double turn) {
+void WalkingPerson::add(Action action, double length_s, const Vec3& from, const Vec3& to,
+                        double heading, double turn) {
   stretches_.push_back({action, period_s_, length_s, from, to, heading, turn});
   period_s_ += length_s;
 }
 
 // A person turns at corners, on the spot.
-void Person::add_walk(const WalkingPath& path) {
+void WalkingPerson::add_walk(const WalkingPath& path) {
   for (std::size_t i = 0; i + 1 < path.size(); ++i) {
     const double heading = heading_of(path[i], path[i + 1]);
     if (i > 0) {
@@ -109,7 +109,7 @@ void Person::add_walk(const WalkingPath& path) {
   }
 }
 
-void Person::place(double t_s) {
+void WalkingPerson::place(double t_s) {
   const double t = t_s - period_s_ * std::floor(t_s / period_s_);
   const auto after = std::ranges::upper_bound(stretches_, t, {}, &Stretch::begin_s);
   const Stretch& now = *std::prev(after);
@@ -137,7 +137,7 @@ void Person::place(double t_s) {
 }
 
 // A stretch of L metres has at most one swing, or kStepsPerMetre L: at its speed, so many rad/s.
-double Person::max_speed() const noexcept {
+double WalkingPerson::max_speed() const noexcept {
   double fastest = kTurnSpeed * (kArmRadius + 0.05);
   for (const Stretch& stretch : stretches_) {
     if (stretch.action != Action::kWalk) continue;

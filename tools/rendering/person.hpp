@@ -18,7 +18,7 @@ using WalkingPath = std::vector<Vec3>;
 
 // The state is a function of time alone, and repeats: it walks to the last point, stands there and
 // reaches out its right hand, turns round, walks back and turns round again.
-class Person {
+class WalkingPerson {
  public:
   struct Limb {
     ConvexBody shape;
@@ -26,7 +26,7 @@ class Person {
   };
 
   // `speed`: of walking, m/s, above 0.
-  Person(WalkingPath path, double speed);
+  WalkingPerson(WalkingPath path, double speed);
 
   // Places all limbs at a time after the start, s.
   void place(double t_s);

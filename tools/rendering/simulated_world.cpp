@@ -34,7 +34,8 @@ const SimulatedFrame* mover_of(const Cell& cell, const std::string& frame) {
 
 }  // namespace
 
-SimulatedWorld::SimulatedWorld(const Cell& cell, JointMotion joints, std::vector<Person> people)
+SimulatedWorld::SimulatedWorld(const Cell& cell, JointMotion joints,
+                               std::vector<WalkingPerson> people)
     : cell_(cell),
       joints_(std::move(joints)),
       people_(std::move(people)),
@@ -69,7 +70,7 @@ void SimulatedWorld::place(double t_s) {
   poses_at(cell_.simulation, t_s, simulated_);
   for (const PoseAt& each : simulated_) objects_[each.object] = each.world_from_object;
   if (!cell_.scene.robots.empty()) place_robots(t_s);
-  for (Person& person : people_) person.place(t_s);
+  for (WalkingPerson& person : people_) person.place(t_s);
   add_bodies();
 }
 
@@ -106,8 +107,8 @@ void SimulatedWorld::add_bodies() {
     for (const Part& part : object.parts)
       bodies_.push_back({&part.shape, compose(*objects_[i], part.object_from_part), i});
   }
-  for (const Person& person : people_) {
-    for (const Person::Limb& limb : person.limbs())
+  for (const WalkingPerson& person : people_) {
+    for (const WalkingPerson::Limb& limb : person.limbs())
       bodies_.push_back({&limb.shape, limb.world_from_limb, kPerson});
   }
 }

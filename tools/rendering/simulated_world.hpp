@@ -33,7 +33,7 @@ class SimulatedWorld {
   static constexpr std::uint32_t kPerson = std::numeric_limits<std::uint32_t>::max() - 1;
 
   // The cell must outlive this.
-  SimulatedWorld(const Cell& cell, JointMotion joints, std::vector<Person> people);
+  SimulatedWorld(const Cell& cell, JointMotion joints, std::vector<WalkingPerson> people);
 
   void place(double t_s);
 
@@ -57,7 +57,7 @@ class SimulatedWorld {
 
   const Cell& cell_;
   JointMotion joints_;
-  std::vector<Person> people_;
+  std::vector<WalkingPerson> people_;
   std::vector<PoseAt> simulated_;
   std::vector<JointSample> samples_;
   std::vector<TrackedVariable> variables_;

@@ -61,7 +61,8 @@ std::vector<NamedRobot> robots_of(const Cell& cell) {
                                           cell.file.parent_path() / entry.value.text);
       }
     }
-    robots.push_back(std::move(robot));
+    // The limbs of a person without a URDF have no other looks than their capsules.
+    if (!robot.urdf.empty()) robots.push_back(std::move(robot));
   }
   return robots;
 }

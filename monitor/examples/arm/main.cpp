@@ -1,9 +1,10 @@
 // An example of a program beside the daemon: an arm that keeps away from obstacles by the daemon's
-// gradients, tells it what it holds, asks it before each motion, stops for a person, or changes its
-// tool.
+// gradients, tells it what it holds, asks it before each motion, stops for a person, changes its
+// tool, or works beside a tracked person.
 #include <cstdio>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "monitor/app/cell_arguments.hpp"
 #include "monitor/app/log.hpp"
@@ -16,6 +17,7 @@
 #include "monitor/dds/dds_log.hpp"
 #include "monitor/examples/arm/ask.hpp"
 #include "monitor/examples/arm/avoid.hpp"
+#include "monitor/examples/arm/people.hpp"
 #include "monitor/examples/arm/pick.hpp"
 #include "monitor/examples/arm/stops.hpp"
 #include "monitor/examples/arm/tools.hpp"
@@ -32,11 +34,12 @@ constexpr const char* kFooter = R"(Exit status:
   5  stopped, or the daemon did not answer
   6  the daemon refused a command
 
-Examples, beside clearanced config/cells/avoid.yaml --partition lab, or pick.yaml, stops.yaml, tools.yaml:
+Examples, beside clearanced config/cells/avoid.yaml --partition lab, or pick.yaml, stops.yaml, tools.yaml, people.yaml:
   build/bin/example_arm avoid config/cells/avoid.yaml --partition lab
   build/bin/example_arm pick config/cells/pick.yaml --partition lab
   build/bin/example_arm stops config/cells/stops.yaml --partition lab
   build/bin/example_arm tools config/cells/tools.yaml --partition lab --changes 100
+  build/bin/example_arm people config/cells/people.yaml --partition lab
   build/bin/example_arm ask config/cells/pick.yaml --partition lab    # clearanced --questions "example arm")";
 
 struct Arguments {
@@ -46,6 +49,7 @@ struct Arguments {
   pick::RunOptions pick;
   stops::RunOptions stops;
   tools::RunOptions tools;
+  people::RunOptions people;
   double speed = 1.0;  // of the jogs that are asked about
 };
 
@@ -168,6 +172,24 @@ int change_tools(const Cell& cell, client::Connection& connection, Arguments& ar
   return kOk;
 }
 
+// A person walks up to the arm and reaches out, leaves, and comes again.
+int work_beside_people(const Cell& cell, client::Connection& connection, Arguments& arguments,
+                       StopSignal& signal) {
+  const people::RunResult result =
+      people::run(cell, connection, arguments.people, [&signal] { return !signal.wait(0); });
+  if (!result.heard) {
+    return no_answer(connection,
+                     "reports came; does clearanced run, with config/cells/people.yaml,");
+  }
+  const std::vector<double>& below = result.below_truth_m;
+  print(stdout, "{:>7} {:>6} {:>6}  {:>14} {:>5}  {:>9}  {:<26} {:>22}\n", "reports", "missed",
+        "bodies", "bounds checked", "false", "nearest m", "pair", "truth - lower, median m");
+  print(stdout, "{:>7} {:>6} {:>6}  {:>14} {:>5}  {:>9.4f}  {:<26} {:>22.4f}\n", result.reports,
+        result.missed, result.bodies, result.compared, result.wrong, result.least_distance_m,
+        result.nearest, below.empty() ? 0.0 : below[below.size() / 2]);
+  return kOk;
+}
+
 const char* name_of(jog::Decision decision) {
   switch (decision) {
     case jog::Decision::kMade:
@@ -209,7 +231,7 @@ int run(int argc, char** argv, StopSignal& signal) {
   Arguments arguments;
   CommandLine line{
       "An arm beside the daemon that avoids obstacles, carries a part, asks first, "
-      "stops for a person, or changes its tool.",
+      "stops for a person, changes its tool, or works beside a tracked person.",
       kFooter};
   line.subcommands = {
       kind(arguments, "avoid",
@@ -232,6 +254,13 @@ int run(int argc, char** argv, StopSignal& signal) {
       kind(arguments, "tools", "Attaches and detaches a gripper and a torch beside a person",
            {{"--changes", &arguments.tools.changes, "Tools that come or go", number_in(1.0, 1e6),
              shown()}}),
+      kind(arguments, "people",
+           "Works beside a person whose motion was recorded, as a tracker of ROS4HRI tells it",
+           {{"--seconds", &arguments.people.seconds, "Length of the run", number_in(2.0, 3600.0),
+             shown()},
+            {"--motion", &arguments.people.motion, "A BVH file; none: a motion that is made up"},
+            {"--metres", &arguments.people.metres, "The unit of its lengths, m",
+             number_in(1e-4, 10.0), shown()}}),
   };
   if (const auto done = parse(line, argc, argv)) return *done;
   start_log("example_arm", "error");
@@ -242,6 +271,7 @@ int run(int argc, char** argv, StopSignal& signal) {
   if (line.chosen == "avoid") return avoid_twice(*cell, connection, arguments, signal);
   if (line.chosen == "pick") return pick_twice(connection, arguments, signal);
   if (line.chosen == "stops") return stop_thrice(*cell, connection, arguments, signal);
+  if (line.chosen == "people") return work_beside_people(*cell, connection, arguments, signal);
   if (line.chosen == "tools") return change_tools(*cell, connection, arguments, signal);
   return ask_each(connection, arguments, signal);
 }

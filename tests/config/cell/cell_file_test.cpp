@@ -136,7 +136,8 @@ TEST(CellFile, ASeparationHasDefaultsOfTheStandardAndItsPairsArePublished) {
       with_separation("reaction_time_ms: 100, stopping_time_ms: 250, stopping_distance: 125, "
                       "intrusion_distance: 0"));
   const Separation& terms = *scene.zones.at(0).separation;
-  EXPECT_EQ(terms.human_speed, 1.6);
+  EXPECT_FALSE(terms.human_speed);
+  for (const Object& object : scene.objects) EXPECT_EQ(object.approach_speed, 1.6);
   EXPECT_FALSE(terms.human_speed_is_measured);
   EXPECT_FALSE(terms.reaction_is_measured);
   EXPECT_EQ(scene.response_limit_ns, Scene::kNoLimit);

@@ -230,7 +230,7 @@ TEST(SensorsOfACell, StandForPeopleWithAStatedSpeedOnly) {
                        "enter_below: 0.1, leave_above: 0.2, separation: {" +
                            keys + terms);
   };
-  EXPECT_EQ(scene_of(with("human: eye, robot_speed: 1, ")).zones[0].separation->human_speed, 1.6);
+  EXPECT_FALSE(scene_of(with("human: eye, robot_speed: 1, ")).zones[0].separation->human_speed);
   EXPECT_THAT(errors_of(with("human: eye, human_speed_measured: true, human_acceleration: 5, ")),
               testing::HasSubstr("the sensor 'eye', which measures no speeds"));
   EXPECT_THAT(errors_of(with("human: arm, ")),

@@ -147,6 +147,17 @@ TEST_F(RosJointStatesTest, OfMoreTopicsThanAreHeardTheFirstAreTaken) {
   EXPECT_EQ(heard.told(lines::kTooManyTopics.code), 1u);
 }
 
+// Each body that a tracker sees has a topic of its own, and many come and go in a day.
+TEST_F(RosJointStatesTest, OfATopicWhoseWritersHaveLeftHaveNoPlaceAmongThose) {
+  for (std::size_t i = 0; i < 3 * RosJointStates::kMostTopics; ++i) {
+    const std::string topic = "/humans/bodies/b" + std::to_string(i) + "/joint_states";
+    EXPECT_TRUE(take({{"right_push"}, {0.1}}, topic)) << i;
+    EXPECT_TRUE(take({{"right_push"}, {0.1}}, "/humans/bodies/b0/joint_states")) << i;
+    heard.intake.keep({});
+  }
+  EXPECT_EQ(heard.told(lines::kTooManyTopics.code), 0u);
+}
+
 TEST_F(RosJointStatesTest, ThatDoNotDecodeAreCountedAndGiveNothing) {
   RosMessage cut = joint_state(now(), now(), {{"right_push"}, {0.1}});
   cut.cdr.resize(cut.cdr.size() / 2);

@@ -1,0 +1,21 @@
+// Reads `person:` of a robot in a cell file.
+#pragma once
+
+#include <string>
+
+#include "config/yaml/map_reader.hpp"
+#include "config/yaml/quantities.hpp"
+
+namespace clearance {
+
+struct PersonKeys {
+  double stature = 0.0;  // m
+  double error = 0.0;    // m: no point of the body is farther outside the capsules
+  std::string id;        // empty: no tracker says where the person is
+};
+
+// `robot` is the map of the whole robot, whose keys that no person can have are refused.
+[[nodiscard]] PersonKeys read_person(const YamlNode& node, MapReader& robot,
+                                     const Quantities& quantities);
+
+}  // namespace clearance

@@ -1,0 +1,78 @@
+#include "monitor/intake/tracked_persons.hpp"
+
+#include <algorithm>
+
+#include "config/scene/body_id.hpp"
+#include "monitor/wire/ros_types.hpp"
+
+namespace clearance {
+namespace {
+
+// What a person of the cell is by the list: absent, or there with this body; empty: nothing says
+// where.
+using State = std::optional<std::string>;
+
+bool is_absent(const Robot& person, const Scene& scene) {
+  return std::ranges::any_of(person.links, [&](const RobotLink& link) {
+    return link.object != RobotLink::kNoObject && scene.objects[link.object].absent;
+  });
+}
+
+State state_of(const Robot& person, const Scene& scene) {
+  return is_absent(person, scene) ? State() : State(person.person->id);
+}
+
+// A body keeps its person, so that what is known of it stays.
+std::vector<State> states_by(std::vector<std::string> bodies, std::span<const Robot*> persons,
+                             const Scene& scene) {
+  std::vector<State> states(persons.size());
+  std::vector<std::size_t> free;
+  for (std::size_t i = 0; i < persons.size(); ++i) {
+    const State before = state_of(*persons[i], scene);
+    const auto found = before ? std::ranges::find(bodies, *before) : bodies.end();
+    if (found == bodies.end()) {
+      free.push_back(i);
+    } else {
+      states[i] = *before;
+      bodies.erase(found);
+    }
+  }
+  std::size_t given = 0;
+  for (const std::string& body : bodies) {
+    if (given == free.size() || !is_body_id(body)) {
+      states.back() = "";
+    } else {
+      states[free[given++]] = body;
+    }
+  }
+  return states;
+}
+
+}  // namespace
+
+std::vector<CellChange> changes_by_bodies(const std::optional<std::vector<std::string>>& bodies,
+                                          const Scene& scene) {
+  std::vector<const Robot*> persons;
+  for (const Robot& robot : scene.robots)
+    if (robot.person) persons.push_back(&robot);
+  if (persons.empty()) return {};
+  const std::vector<State> states =
+      bodies ? states_by(*bodies, persons, scene) : std::vector<State>(persons.size(), State(""));
+  std::vector<CellChange> changes;
+  for (std::size_t i = 0; i < persons.size(); ++i) {
+    if (states[i] == state_of(*persons[i], scene)) continue;
+    changes.emplace_back(SetAbsent{persons[i]->name, !states[i], states[i].value_or("")});
+  }
+  return changes;
+}
+
+std::vector<CellChange> changes_by_bodies(std::span<const std::byte> cdr, CdrBytes bytes,
+                                          const Scene& scene) {
+  CdrDecoder decoder;
+  Sample<hri_msgs_msg_dds__IdsList_> list;
+  if (cdr.empty() || !decoder.decode(cdr, list, bytes)) return changes_by_bodies({}, scene);
+  return changes_by_bodies(
+      std::vector<std::string>(list->ids._buffer, list->ids._buffer + list->ids._length), scene);
+}
+
+}  // namespace clearance

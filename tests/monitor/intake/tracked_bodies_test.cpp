@@ -1,0 +1,160 @@
+// Persons of a cell appear and leave as ROS4HRI's lists of bodies say.
+//
+// Oracle: CDR by its rules, and the table of states in each test.
+#include "monitor/intake/tracked_bodies.hpp"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <variant>
+#include <vector>
+
+#include "config/edit/cell_editor.hpp"
+#include "monitor/intake/tracked_persons.hpp"
+#include "tests/config/cells.hpp"
+#include "tests/monitor/intake/heard.hpp"
+
+namespace clearance {
+namespace {
+
+using testing::ElementsAre;
+
+const std::string kCell =
+    "name: test\nunits: {length: m, angle: rad}\n"
+    "ros2: {world_frame: map, tracked_bodies: true}\nrobots:\n"
+    "  - {name: one, person: {stature: 1.7, error: 0.06}, groups: [people]}\n"
+    "  - {name: two, person: {stature: 1.7, error: 0.06}, groups: [people]}\n"
+    "objects:\n  - {name: post, fixed: true, sphere: {radius: 0.1}}\n"
+    "pairs: [{between: [people, post]}]\n";
+
+// A cell whose text follows lists of bodies.
+class TrackedPersons : public testing::Test {
+ protected:
+  // Returns what each person is then: its body, "absent", or "unknown".
+  std::vector<std::string> after(const std::optional<std::vector<std::string>>& bodies) {
+    const std::vector<CellChange> changes = changes_by_bodies(bodies, cell_.scene);
+    if (!changes.empty()) {
+      auto result = editor_.edit(changes);
+      if (const auto* refusal = std::get_if<EditRefusal>(&result)) ADD_FAILURE() << refusal->reason;
+      cell_ = std::get<Cell>(std::move(result));
+    }
+    EXPECT_TRUE(changes_by_bodies(bodies, cell_.scene).empty()) << "the same list changes nothing";
+    std::vector<std::string> states;
+    for (const Robot& robot : cell_.scene.robots) {
+      const bool is_absent = cell_.scene
+                                 .objects[robot.links.back().object == RobotLink::kNoObject
+                                              ? robot.links[1].object
+                                              : robot.links.back().object]
+                                 .absent;
+      const std::string& id = robot.person->id;
+      states.push_back(is_absent ? "absent" : id.empty() ? "unknown" : id);
+    }
+    return states;
+  }
+
+  CellEditor editor_ = std::get<CellEditor>(CellEditor::open(kCell, "cell.yaml"));
+  Cell cell_ = read_good(kCell, "cell.yaml");
+};
+
+TEST_F(TrackedPersons, ComeAndGoWithTheirBodiesAndKeepThem) {
+  EXPECT_THAT(after(std::vector<std::string>{}), ElementsAre("absent", "absent"));
+  EXPECT_THAT(after({{"b1"}}), ElementsAre("b1", "absent"));
+  EXPECT_THAT(after({{"b2", "b1"}}), ElementsAre("b1", "b2"));
+  EXPECT_THAT(after({{"b2"}}), ElementsAre("absent", "b2"));
+  EXPECT_THAT(after({{"b3", "b2"}}), ElementsAre("b3", "b2"));
+  EXPECT_THAT(after({{"b4"}}), ElementsAre("b4", "absent")) << "another body: it is found anew";
+}
+
+// A person who has no place in the cell would be unseen: the pairs of the last one are unknown.
+TEST_F(TrackedPersons, OfWhomThereAreTooManyMakeTheLastOneUnknown) {
+  EXPECT_THAT(after({{"b1", "b2", "b3"}}), ElementsAre("b1", "unknown"));
+  EXPECT_THAT(after({{"b1", "b3"}}), ElementsAre("b1", "b3"));
+  EXPECT_THAT(after({{"b1", "b3", "b3"}}), ElementsAre("b1", "unknown")) << "one id for two";
+  EXPECT_THAT(after({{"b1", "not an id"}}), ElementsAre("b1", "unknown"));
+}
+
+TEST_F(TrackedPersons, AreUnknownWhileNothingSaysWhichAreThere) {
+  EXPECT_THAT(after({{"b1"}}), ElementsAre("b1", "absent"));
+  EXPECT_THAT(after(std::nullopt), ElementsAre("unknown", "unknown"));
+  EXPECT_THAT(after(std::vector<std::string>{}), ElementsAre("absent", "absent"));
+}
+
+class TrackedBodiesOfIntake : public testing::Test {
+ protected:
+  bool send(const std::vector<std::string>& ids, const std::string& type = "hri_msgs/msg/IdsList") {
+    test::RosCdr cdr;
+    for (const std::int32_t stamp : {7, 8}) cdr.number(stamp);
+    cdr.text("camera");
+    cdr.number(static_cast<std::uint32_t>(ids.size()));
+    for (const std::string& id : ids) cdr.text(id);
+    return heard_.take({"/humans/bodies/tracked", type, heard_.now.realtime_ns, cdr.bytes()});
+  }
+  // What the last message says.
+  std::vector<CellChange> said() {
+    EXPECT_FALSE(came_.empty());
+    return changes_by_bodies(came_.back().cdr, came_.back().bytes, cell_.scene);
+  }
+
+  const Cell cell_ = read_good(kCell, "cell.yaml");
+  std::vector<moveit::RawScene> came_;
+  test::Heard heard_{cell_, {.use_scene = [this](moveit::RawScene raw) { came_.push_back(raw); }}};
+};
+
+TEST_F(TrackedBodiesOfIntake, AreHandedOnWhenTheListChanges) {
+  EXPECT_TRUE(heard_.intake.hears_ros());
+  EXPECT_FALSE(send({}, "std_msgs/msg/String"));
+  for (int i = 0; i < 5; ++i) EXPECT_TRUE(send({"b1"}));
+  ASSERT_EQ(came_.size(), 1u);
+  const std::vector<CellChange> changes = said();
+  ASSERT_EQ(changes.size(), 2u);
+  const auto& first = std::get<SetAbsent>(changes[0]);
+  EXPECT_EQ(first.object, "one");
+  EXPECT_FALSE(first.absent);
+  EXPECT_EQ(first.id, "b1");
+  EXPECT_TRUE(std::get<SetAbsent>(changes[1]).absent);
+  EXPECT_TRUE(send({"b1", "b2"}));
+  EXPECT_EQ(came_.size(), 2u);
+  heard_.pass(TrackedBodies::kSilentNs);
+  EXPECT_TRUE(send({"b1", "b2"}));
+  EXPECT_EQ(came_.size(), 3u) << "the change may have been refused";
+}
+
+TEST_F(TrackedBodiesOfIntake, AreToldWhenThereAreMoreThanTheCellHasPersons) {
+  EXPECT_TRUE(send({"b1", "b2"}));
+  EXPECT_EQ(heard_.told(lines::kTooManyBodies.code), 0u);
+  for (int i = 0; i < 3; ++i) EXPECT_TRUE(send({"b1", "b2", "b3"}));
+  EXPECT_EQ(heard_.told(lines::kTooManyBodies.code), 1u);
+}
+
+// A tracker that was never heard is silent, too: nothing says then that no person is there.
+TEST_F(TrackedBodiesOfIntake, AreUnknownAfterASecondWithoutAList) {
+  heard_.settle();
+  heard_.pass(TrackedBodies::kSilentNs - 1);
+  heard_.settle();
+  EXPECT_TRUE(came_.empty());
+  for (int i = 0; i < 3; ++i) {
+    heard_.pass(1);
+    heard_.settle();
+  }
+  ASSERT_EQ(came_.size(), 1u);
+  EXPECT_TRUE(said().empty()) << "both are unknown already";
+  EXPECT_EQ(heard_.told(lines::kBodiesSilent.code), 1u);
+  EXPECT_TRUE(send({}));
+  ASSERT_EQ(came_.size(), 2u);
+  EXPECT_EQ(said().size(), 2u);
+  heard_.pass(TrackedBodies::kSilentNs);
+  heard_.settle();
+  EXPECT_EQ(came_.size(), 3u);
+  EXPECT_EQ(heard_.told(lines::kBodiesSilent.code), 2u);
+}
+
+TEST_F(TrackedBodiesOfIntake, ThatAreCutOffAreRefused) {
+  EXPECT_FALSE(heard_.take({"/humans/bodies/tracked", "hri_msgs/msg/IdsList", 0, {}}));
+  EXPECT_TRUE(came_.empty());
+}
+
+}  // namespace
+}  // namespace clearance

@@ -1,0 +1,120 @@
+// Persons of a running daemon come and go as a tracker of ROS4HRI says, over real DDS.
+#include <gtest/gtest.h>
+
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "monitor/examples/arm/bvh.hpp"
+#include "monitor/examples/arm/made_motion.hpp"
+#include "monitor/examples/arm/ros_tracker.hpp"
+#include "tests/tools/watched_daemon.hpp"
+
+namespace clearance::test {
+namespace {
+
+const std::string kPeopleCell =
+    "name: people\nunits: {length: m, angle: rad}\nrate_hz: 200\n"
+    "ros2: {world_frame: map, tracked_bodies: true}\nrobots:\n"
+    "  - {name: one, person: {stature: 1.75, error: 0.1}, groups: [people], age_limit_ms: 500}\n"
+    "  - {name: two, person: {stature: 1.75, error: 0.1}, groups: [people], age_limit_ms: 500}\n"
+    "objects:\n  - {name: post, fixed: true, pose: {xyz: [3, 0, 1]}, sphere: {radius: 0.1}}\n"
+    "pairs: [{between: [people, post], publish: true}]\n"
+    "zones: [{name: near, between: [people, post], enter_below: 0.2, leave_above: 0.3}]\n";
+
+class DaemonPeople : public WatchedDaemon {
+ protected:
+  DaemonPeople() {
+    const people::Bvh motion = people::read_bvh(people::walking_and_reaching(1, 1));
+    skeleton_ = people::PersonFit().fit(people::keypoints_of(motion, 0, 0.01));
+  }
+  void SetUp() override {
+    watch(kPeopleCell);
+    tracker_.emplace(connection_, "map");
+  }
+  // Sends the list, and where each of `told` is, until both persons have these states.
+  bool become(const std::vector<std::string>& listed, const std::vector<std::string>& told,
+              PairStatus one, PairStatus two) {
+    const auto step = [&] {
+      const std::int64_t now_ns = client::now_ns();
+      tracker_->list(listed, now_ns);
+      for (const std::string& id : told) tracker_->tell(id, skeleton_, now_ns);
+    };
+    return step_until(20, step, [&] { return is("torso_one", one) && is("torso_two", two); });
+  }
+
+  static constexpr PairStatus kKnown = PairStatus::kConverged, kUnknown = PairStatus::kUnknown,
+                              kAbsent = PairStatus::kAbsent;
+  client::Connection connection_{dds};
+  std::optional<people::RosTracker> tracker_;
+  people::Skeleton skeleton_;
+};
+
+TEST_F(DaemonPeople, ComeAndGoByTheListOfBodies) {
+  EXPECT_TRUE(step_until(
+      5, [] {}, [&] { return is("torso_one", kUnknown) && is("torso_two", kUnknown); }))
+      << "no tracker has said that no person is there";
+  EXPECT_TRUE(become({}, {}, kAbsent, kAbsent)) << daemon->output();
+  EXPECT_TRUE(become({"b1"}, {"b1"}, kKnown, kAbsent)) << daemon->output();
+  // The shoulders are 3 m before the post, at a height of 1.46 m or so.
+  EXPECT_NEAR(pair("torso_one").distance, 3.0 - 0.1 - 0.16, 0.2);
+  EXPECT_LT(pair("torso_one").lower, pair("torso_one").distance - 0.09) << "by the stated error";
+  EXPECT_TRUE(become({"b2"}, {"b2"}, kKnown, kAbsent)) << "another body, and another topic";
+  EXPECT_TRUE(become({}, {}, kAbsent, kAbsent));
+}
+
+TEST_F(DaemonPeople, OfWhomThereAreTooManyMakeTheLastUnknown) {
+  EXPECT_TRUE(become({"b1", "b2", "b3"}, {"b1"}, kKnown, kUnknown)) << daemon->output();
+  EXPECT_TRUE(step_until(
+      5, [] {}, told("too-many-bodies", {"3"}), 5))
+      << daemon->output();
+  EXPECT_TRUE(become({"b1"}, {"b1"}, kKnown, kAbsent));
+}
+
+TEST_F(DaemonPeople, AreUnknownWhileTheirSkeletonOrTheListIsSilent) {
+  EXPECT_TRUE(become({"b1"}, {"b1"}, kKnown, kAbsent)) << daemon->output();
+  EXPECT_TRUE(become({"b1"}, {}, kUnknown, kAbsent)) << "no joints and no frame";
+  EXPECT_TRUE(become({"b1"}, {"b1"}, kKnown, kAbsent));
+  EXPECT_TRUE(step_until(
+      20, [] {}, [&] { return is("torso_one", kUnknown) && is("torso_two", kUnknown); }))
+      << daemon->output();
+  EXPECT_TRUE(daemon->told("bodies-silent"));
+  EXPECT_TRUE(become({"b1"}, {"b1"}, kKnown, kAbsent));
+}
+
+// The output of the demo, as far as it does not depend on the machine.
+TEST(ArmBesidePeople, FindsNoFalseBoundAgainstTheTrueBody) {
+  const std::string cell = test::places::sources() + "/config/cells/people.yaml";
+  const DdsOptions dds = own_dds();
+  ChildProcess daemon(kDaemon, with({cell}, dds_arguments(dds)));
+  ChildProcess arm(
+      test::places::programs() + "/example_arm",
+      with({"people", cell, "--seconds", "9", "--metres", "0.01"}, dds_arguments(dds)));
+  ASSERT_EQ(arm.wait(std::chrono::seconds(120)), 0) << arm.output();
+  std::istringstream lines(arm.output());
+  std::string figures;
+  while (std::getline(lines, figures) && figures.find("bodies") == std::string::npos) {
+  }
+  long reports = 0, missed = 0, bodies = 0, compared = 0, wrong = -1;
+  lines >> reports >> missed >> bodies >> compared >> wrong;
+  EXPECT_EQ(bodies, 2) << arm.output();
+  EXPECT_EQ(wrong, 0) << arm.output();
+  EXPECT_GT(compared, 100) << arm.output();
+}
+
+TEST(ArmBesidePeople, NeedsACellWithPersonsAndAMotionThatCanBeRead) {
+  const DdsOptions dds = own_dds();
+  ChildProcess without(
+      test::places::programs() + "/example_arm",
+      with({"people", test::places::sources() + "/config/cells/avoid.yaml"}, dds_arguments(dds)));
+  EXPECT_EQ(without.wait(), 1);
+  EXPECT_TRUE(without.wrote("persons")) << without.output();
+  const std::string cell = test::places::sources() + "/config/cells/people.yaml";
+  ChildProcess no_motion(test::places::programs() + "/example_arm",
+                         with({"people", cell, "--motion", cell}, dds_arguments(dds)));
+  EXPECT_EQ(no_motion.wait(), 1);
+  EXPECT_TRUE(no_motion.wrote("BVH")) << no_motion.output();
+}
+
+}  // namespace
+}  // namespace clearance::test
