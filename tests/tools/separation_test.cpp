@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <chrono>
 #include <csignal>
+#include <map>
 #include <string>
 #include <thread>
 
@@ -123,17 +124,19 @@ TEST(SeparationOverDds, CountsTheMeasuredDelayAndIsFailSafeBeyondTheLimitAsARepl
   daemon.signal(SIGTERM);
   EXPECT_EQ(daemon.wait(), 0) << daemon.output();
 
-  std::int64_t delay = TickTime::kNotMeasured;
-  int known = 0, beyond = 0, ticks = 0;
-  for (const Kept& message : messages_of(run)) {
-    if (message.kind == TopicKind::kDistances) {
-      delay = decoded<clearance_msg_Distances>(message)->report_delay_ns;
-      if (ticks++ == 0) {
-        EXPECT_EQ(delay, TickTime::kNotMeasured) << "nothing was published yet";
-      }
-    }
+  const std::vector<Kept> messages = messages_of(run);
+  std::map<std::uint64_t, std::int64_t> delays;  // by cycle
+  for (const Kept& message : messages) {
+    if (message.kind != TopicKind::kDistances) continue;
+    const auto report = decoded<clearance_msg_Distances>(message);
+    delays[report->cycle] = report->report_delay_ns;
+  }
+  EXPECT_EQ(delays.at(1), TickTime::kNotMeasured) << "nothing was published yet";
+  int known = 0, beyond = 0;
+  for (const Kept& message : messages) {
     if (message.kind != TopicKind::kSeparation) continue;
     const auto separation = decoded<clearance_msg_Separation>(message);
+    const std::int64_t delay = delays.at(separation->cycle);
     const clearance_msg_PairSeparation& pair = separation->pairs._buffer[0];
     const std::int64_t age = std::max(pair.age_human_ns, pair.age_robot_ns);
     if (age < 0) continue;
