@@ -150,6 +150,8 @@ changes:
 TEST(ChangeReader, AcceptsOneChangeWithoutAList) {
   EXPECT_EQ(only<Attach>("attach: {object: part, to: hand}").to, "hand");
   EXPECT_FALSE(only<SetAbsent>("set_absent: {object: part, absent: false}").absent);
+  EXPECT_EQ(only<SetAbsent>("set_absent: {object: part}").id, std::nullopt);
+  EXPECT_EQ(only<SetAbsent>("set_absent: {object: person_1, id: b7}").id, "b7");
 }
 
 TEST(ChangeReader, ReadsTheFileThatReplacesTheCellFromBesideTheChanges) {
