@@ -73,6 +73,13 @@ class RobotInputs {
   // which robots stand must already be advanced.
   void place(std::int64_t now_ns, std::span<TrackedObject> objects) noexcept;
 
+  // Calls visit(name, table) with each table that nothing changes after construction.
+  template <class Visit>
+  void each_constant(Visit&& visit) const {
+    visit("robots of links", robot_of_);
+    kinematics_.each_constant(visit);
+  }
+
  private:
   const Scene& scene_;
   std::uint32_t first_link_;

@@ -7,6 +7,8 @@
 #include <cmath>
 #include <thread>
 
+#include "monitor/tick/self_test.hpp"
+
 namespace clearance {
 namespace {
 
@@ -42,7 +44,7 @@ void TickLoop::run(const std::atomic<bool>& stop) noexcept {
   while (!stop.load(std::memory_order_relaxed)) {
     deadline = wait(deadline);
     const std::int64_t started = clock_.monotonic_ns();
-    tick_once();
+    if (!tick_once()) break;
     const std::int64_t ended = clock_.monotonic_ns();
 
     statistics_.wakeup.add(started - deadline);
@@ -99,12 +101,14 @@ std::int64_t TickLoop::next_deadline(std::int64_t deadline, std::int64_t ended) 
   return next + missed * period_ns_;
 }
 
-// Runs one tick and gives its report to every sink.
-void TickLoop::tick_once() noexcept {
+// Runs one tick and gives its report to every sink. False: the self-test has failed, so that no
+// sink gets it.
+bool TickLoop::tick_once() noexcept {
   TickPace* const pace = options_.pace;
   if (pace == nullptr) between_ticks();
   take_in();
   const Report& report = state_.tick(tick_time());
+  if (state_.monitor().self_test().failed()) return false;
   statistics_.cycle = report.cycle;
   statistics_.now_ns = report.now_ns;
   statistics_.clock_offset_ns = report.clock_offset_ns;
@@ -116,6 +120,7 @@ void TickLoop::tick_once() noexcept {
     sink->report(report, std::span(used_).first(used_count_));
   }
   state_.clear();
+  return true;
 }
 
 TickTime TickLoop::tick_time() noexcept {

@@ -16,8 +16,9 @@ namespace clearance {
 // one between two ticks.
 class JoinedState {
  public:
-  explicit JoinedState(const Scene& scene)
-      : monitor_(std::make_unique<Monitor>(scene)), ids_(scene) {}
+  // `similar`: that of Monitor.
+  explicit JoinedState(const Scene& scene, const Monitor* similar = nullptr)
+      : monitor_(std::make_unique<Monitor>(scene, similar)), ids_(scene) {}
 
   // Reads the bytes of save_state(). False: they do not fit this scene.
   [[nodiscard]] bool restore(std::span<const std::byte> bytes, std::uint64_t lineage) {
