@@ -69,9 +69,8 @@ class ConstantMemory {
            std::size_t count);
   // What an element holds outside of itself.
   template <class T>
-  void add_inside(const char* table, const T& value) {
+  void add_inside(const char* /*table*/, const T& /*value*/) {
     static_assert(std::is_trivially_destructible_v<T>, "an overload has to list what it holds");
-    static_cast<void>(table), static_cast<void>(value);
   }
   template <class T>
   void add_inside(const char* table, const std::vector<T>& all) {
