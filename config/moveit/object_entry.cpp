@@ -282,7 +282,7 @@ std::variant<Body, FieldFault> body_of(const CollisionObject& object, LengthUnit
   }
 }
 
-std::variant<Pose, FieldFault> checked_pose(const Pose& pose, std::string field) {
+std::variant<Pose, FieldFault> checked_pose(const Pose& pose, const std::string& field) {
   try {
     return usable_pose(pose, field);
   } catch (Fault& fault) {

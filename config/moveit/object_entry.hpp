@@ -38,7 +38,8 @@ struct Body {
 
 // Returns a pose with a unit quaternion. One of zeros, which some programs leave behind, means no
 // rotation. `field` names the pose.
-[[nodiscard]] std::variant<Pose, FieldFault> checked_pose(const Pose& pose, std::string field);
+[[nodiscard]] std::variant<Pose, FieldFault> checked_pose(const Pose& pose,
+                                                          const std::string& field);
 
 // Returns one entry of `objects`: a fixed object, whose pose is in the world.
 [[nodiscard]] YamlNode fixed_entry(const std::string& name, const std::string& group,

@@ -75,6 +75,15 @@ class StatedErrors {
     return any_ ? between(a, b).largest : 0.0;
   }
 
+  // Calls visit(name, table) with each table that nothing changes after construction.
+  template <class Visit>
+  void each_constant(Visit&& visit) const {
+    visit("sources of errors", sources_);
+    visit("errors of objects", objects_);
+    visit("errors of links", of_link_);
+    visit("reach of errors", reach_);
+  }
+
  private:
   struct OfObject {
     std::uint32_t source = ErrorSource::kNone;

@@ -4,6 +4,7 @@
 #include <cassert>
 #include <vector>
 
+#include "core/body_tables.hpp"
 #include "core/convex_body.hpp"
 #include "core/model/support_function.hpp"
 #include "core/numerics/error_constants.hpp"
@@ -198,11 +199,6 @@ void release_spare_capacity(ConvexBody& body) {
           body.neighbours, body.facets_beside);
 }
 
-template <class... T>
-std::size_t bytes_of(const std::vector<T>&... tables) noexcept {
-  return (... + (tables.size() * sizeof(T)));
-}
-
 }  // namespace
 
 void add_query_tables(ConvexBody& body) {
@@ -228,11 +224,9 @@ void add_query_tables(ConvexBody& body) {
 }
 
 std::size_t footprint(const ConvexBody& body) noexcept {
-  return sizeof body +
-         bytes_of(body.facets, body.edges, body.vertices, body.facet_edges, body.vertex_edges,
-                  body.anchors, body.rays, body.recession_cone.rays, body.neighbours,
-                  body.facets_beside) +
-         body.outgoing.bytes() + body.facet_limits.bytes() + body.planes.bytes();
+  std::size_t bytes = sizeof body;
+  each_table(body, [&](const char*, const auto& table) { bytes += table.size_bytes(); });
+  return bytes;
 }
 
 }  // namespace clearance

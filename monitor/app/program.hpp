@@ -19,6 +19,7 @@ enum ExitCode : int {
   kDdsFailed = 4,
   kIncomplete = 5,  // a file or a stream is not complete: --help says which
   kRefused = 6,     // a daemon refused what it was asked
+  kDamaged = 7,     // a bit of the program's memory has flipped
 };
 
 // Returns the exit code of a program that an exception has ended.

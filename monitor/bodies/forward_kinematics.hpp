@@ -56,6 +56,13 @@ class ForwardKinematics {
     return std::span(links_).subspan(first_link_[robot], robots_[robot].links.size());
   }
 
+  // Calls visit(name, table) with each table that nothing changes after construction.
+  template <class Visit>
+  void each_constant(Visit&& visit) const {
+    visit("first links of robots", first_link_);
+    visit("frames of joints", frames_);
+  }
+
  private:
   // The constant part of a joint, in the frame of its parent link.
   struct JointFrame {

@@ -55,6 +55,14 @@ class ModelErrors {
     }
   }
 
+  // Calls visit(name, table) with each table that nothing changes after construction.
+  template <class Visit>
+  void each_constant(Visit&& visit) const {
+    stated_.each_constant(visit);
+    visit("parents of errors", parent_);
+    visit("rotations of errors", rotations_);
+  }
+
  private:
   // The line through a point along a unit direction, and its moment.
   struct Line {

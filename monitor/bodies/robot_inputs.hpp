@@ -76,6 +76,13 @@ class RobotInputs {
   // After place(): of a position, as InputRecord says.
   [[nodiscard]] bool response_is_late() const noexcept { return response_is_late_; }
 
+  // Calls visit(name, table) with each table that nothing changes after construction.
+  template <class Visit>
+  void each_constant(Visit&& visit) const {
+    visit("robots of links", robot_of_);
+    kinematics_.each_constant(visit);
+  }
+
  private:
   const Scene& scene_;
   std::uint32_t first_link_;

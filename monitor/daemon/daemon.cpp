@@ -14,6 +14,7 @@
 #include "monitor/intake/tracked_frames.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/loop/summary.hpp"
+#include "monitor/tick/self_test.hpp"
 
 namespace clearance {
 namespace {
@@ -160,6 +161,8 @@ void Daemon::run(StopSignal& signal) {
   const Scene& scene = now_.cell->scene;
   log_line(lines::kStarted, scene.name, scene.revision, scene.rate_hz, participant_.where());
   log_line(lines::kHowToReach, participant_.how_to_reach());
+  const SelfTest& test = loop_->state().monitor().self_test();
+  log_line(lines::kSelfTest, (test.bytes() + 999) / 1000, test.ticks());
   for (const Robot& robot : scene.robots) {
     for (const std::string& note : robot.notes) log_line(lines::kRobotNote, robot.name, note);
   }
@@ -198,6 +201,9 @@ void Daemon::run(StopSignal& signal) {
   reports_.finish();
   if (now_.ros) now_.ros->finish();
   if (recording_) recording_->finish();
+  if (damaged())
+    log_line(lines::kSelfTestFailed, loop_->state().monitor().self_test().fault(),
+             loop_->state().cycle());
   log_line(lines::kStopped, counted(loop_->statistics().cycle, "tick"));
 }
 
@@ -306,6 +312,7 @@ std::string Daemon::histograms() const {
                           {"response", reports_.responses().slowest()}});
 }
 
+bool Daemon::damaged() const noexcept { return loop_->state().monitor().self_test().failed(); }
 bool Daemon::recording_complete() const noexcept { return !recording_ || recording_->complete(); }
 bool Daemon::recording_hangs() const noexcept { return recording_ && recording_->hangs(); }
 

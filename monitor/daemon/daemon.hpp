@@ -59,12 +59,15 @@ class Daemon : private CellParts {
   Daemon(const Daemon&) = delete;
   Daemon& operator=(const Daemon&) = delete;
 
-  // Ticks until a signal comes, `max_ticks` are done, or an older daemon of this cell is found.
+  // Ticks until a signal comes, `max_ticks` are done, an older daemon of this cell is found, or the
+  // self-test fails.
   // Then it writes everything that is queued.
   void run(StopSignal& signal);
 
   // True when the daemon ends because an older one publishes this cell.
   [[nodiscard]] bool yielded() const noexcept { return reports_.yields(); }
+  // After run(): the self-test of the monitor has failed.
+  [[nodiscard]] bool damaged() const noexcept;
   // After run(): a summary for a person.
   [[nodiscard]] std::string summary() const;
   // After run(): of wake-ups, ticks, reports and responses, as histograms_json() writes them.

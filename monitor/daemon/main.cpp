@@ -38,6 +38,7 @@ constexpr const char* kFooter = R"(Exit status:
   4  DDS could not be joined, or another daemon publishes this cell already
   5  the recording could not be begun (no folder, no permission, no regular file), or it is incomplete at the end
      (deleted, moved or changed by another program, or a disk that is full or too slow); the ticks continue
+  7  a bit of the memory that no tick changes has flipped: the log names the table
 
 Example:
   clearanced config/cells/two_arms.yaml --partition lab --priority 80
@@ -268,7 +269,8 @@ int run_daemon(const Cell& cell, Arguments& arguments, StopSignal& signal) {
     drain_log();
     std::_Exit(kIncomplete);
   }
-  const int status = daemon.yielded()                            ? kDdsFailed
+  const int status = daemon.damaged()                            ? kDamaged
+                     : daemon.yielded()                          ? kDdsFailed
                      : daemon.recording_complete() && is_written ? kOk
                                                                  : kIncomplete;
   if (daemon.still_reads()) {

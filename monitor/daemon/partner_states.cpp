@@ -58,7 +58,8 @@ void PartnerStates::put(std::function<void()> task) {
 void PartnerStates::prepare() {
   if (!ticks_.wants_state()) return;
   const std::shared_ptr<const Cell> cell = changer_.shared_cell();
-  if (prepared_ == nullptr || prepared_->cell != cell) prepared_ = std::make_unique<Prepared>(cell);
+  if (prepared_ == nullptr || prepared_->cell != cell)
+    prepared_ = std::make_unique<Prepared>(cell, loop_.state().monitor());
   port_.request_state(cell->scene.revision);
 }
 

@@ -73,7 +73,8 @@ class PartnerStates {
   struct Prepared {
     std::shared_ptr<const Cell> cell;
     JoinedState state;
-    explicit Prepared(std::shared_ptr<const Cell> of) : cell(std::move(of)), state(cell->scene) {}
+    Prepared(std::shared_ptr<const Cell> of, const Monitor& running)
+        : cell(std::move(of)), state(cell->scene, &running) {}
   };
   std::unique_ptr<Prepared> prepared_;
 };

@@ -9,6 +9,8 @@
 namespace clearance::lines {
 
 inline constexpr std::tuple kAll{kStarted,
+                                 kSelfTest,
+                                 kSelfTestFailed,
                                  kHowToReach,
                                  kSystemRefuses,
                                  kPartitionWithoutRos,

@@ -17,6 +17,12 @@ using enum LogLevel;
 
 inline constexpr LogLine<Text, Count, double, Text> kStarted{
     "started", kInfo, "cell '{}' (revision {:016x}) at {} Hz on {}"};
+inline constexpr LogLine<Count, Count> kSelfTest{
+    "self-test", kInfo, "ticks check {} kB of constant memory, all of it within {} ticks"};
+inline constexpr LogLine<Text, Count> kSelfTestFailed{
+    "self-test-failed", kError,
+    "{}, found in tick {}, whose report is not published. The daemon ends: start it again. If this "
+    "comes again, have the memory of this machine tested"};
 inline constexpr LogLine<Text> kHowToReach{"how-to-reach", kInfo, "{}"};
 inline constexpr LogLine<Text> kSystemRefuses{"system-refuses", kWarn, "{}"};
 inline constexpr LogLine<Text> kPartitionWithoutRos{

@@ -12,6 +12,8 @@
 #include "monitor/inputs/elapsed.hpp"
 #include "monitor/inputs/input_owner.hpp"
 
+#include "monitor/tick/self_test.hpp"
+
 namespace clearance {
 namespace {
 
@@ -49,7 +51,7 @@ void TickLoop::run(const std::atomic<bool>& stop) noexcept {
   while (!stop.load(std::memory_order_relaxed)) {
     deadline = wait(deadline);
     const std::int64_t started = clock_.monotonic_ns();
-    tick_once(deadline);
+    if (!tick_once(deadline)) break;
     const std::int64_t ended = clock_.monotonic_ns();
 
     statistics_.wakeup.add(started - deadline);
@@ -108,8 +110,8 @@ std::int64_t TickLoop::next_deadline(std::int64_t deadline, std::int64_t ended) 
 }
 
 // Runs one tick and gives its report to every sink. The time of a tick with a pace is that of its
-// deadline.
-void TickLoop::tick_once(std::int64_t deadline) noexcept {
+// deadline. False: the self-test has failed, so that no sink gets it.
+bool TickLoop::tick_once(std::int64_t deadline) noexcept {
   TickPace* const pace = options_.pace;
   if (pace == nullptr) {
     between_ticks();
@@ -119,6 +121,7 @@ void TickLoop::tick_once(std::int64_t deadline) noexcept {
   note_stamps();
   const std::int64_t told_ns = pace == nullptr ? clock_.monotonic_ns() : deadline;
   const Report& report = state_.tick(tick_time());
+  if (state_.monitor().self_test().failed()) return false;
   statistics_.late_responses += state_.monitor().response_is_late();
   start_report(told_ns, report);
   statistics_.cycle = report.cycle;
@@ -133,6 +136,7 @@ void TickLoop::tick_once(std::int64_t deadline) noexcept {
     sink->report(report, std::span(used_).first(used_count_));
   }
   state_.clear();
+  return true;
 }
 
 TickTime TickLoop::tick_time() noexcept {

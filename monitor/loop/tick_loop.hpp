@@ -86,7 +86,8 @@ class TickLoop {
   // has ended.
   [[nodiscard]] bool ask(LoopQuestion& question, const std::atomic<bool>& loop_ended);
 
-  // Runs in the calling thread until `stop` is set or `max_ticks` are done.
+  // Runs in the calling thread until `stop` is set, `max_ticks` are done, or the self-test of the
+  // monitor has failed.
   void run(const std::atomic<bool>& stop) noexcept;
 
   // The figures that the sinks got last; after run(), the final ones.
@@ -101,7 +102,7 @@ class TickLoop {
   void answer_question() noexcept;
   void change_scene(SceneOffer& offer) noexcept;
   void take_in() noexcept;
-  void tick_once(std::int64_t deadline) noexcept;
+  [[nodiscard]] bool tick_once(std::int64_t deadline) noexcept;
   [[nodiscard]] TickTime tick_time() noexcept;
   void use(const PoseBatch& batch) noexcept;
   void note_source(const PoseBatch& batch) noexcept;

@@ -40,6 +40,16 @@ class Differentiation {
   void differentiate(std::span<const PairReport> pairs, const TickView& view,
                      const RobotInputs& inputs, Gradients& gradients) noexcept;
 
+  // Calls visit(name, table) with each table that nothing changes after construction.
+  template <class Visit>
+  void each_constant(Visit&& visit) const {
+    visit("rows of gradients", rows_.rows);
+    visit("variables of gradients", rows_.variables);
+    visit("joints of gradients", moving_);
+    visit("terms of rows", terms_of_);
+    visit("terms of gradients", terms_);
+  }
+
  private:
   // A joint whose screws are computed.
   struct Moving {

@@ -102,6 +102,14 @@ struct PairTable {
     return all_single_ ? entries[part_pair].object_b : part_b_[part_pair];
   }
 
+  // Calls visit(name, table) with each table that nothing changes after construction.
+  template <class Visit>
+  void each_constant(Visit&& visit) const {
+    visit("first part pairs", first_part_pair_);
+    visit("first parts of part pairs", part_a_);
+    visit("second parts of part pairs", part_b_);
+  }
+
  private:
   void number_part_pairs(const Scene& scene, const std::vector<PosedPart>& parts);
   void state_errors(const Scene& scene);

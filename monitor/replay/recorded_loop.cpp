@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "monitor/files/build_info.hpp"
+#include "monitor/tick/self_test.hpp"
 #include "monitor/wire/partner_state.hpp"
 
 namespace clearance {
@@ -69,6 +70,11 @@ const Report* RecordedLoop::tick(const TickInput& input) {
   if (sensors_) take_frames(input);
   const Report& report = state_->tick(input.time);
   state_->clear();
+  if (monitor().self_test().failed()) {
+    error_ =
+        fmt::format("the memory of this program is damaged: {}", monitor().self_test().fault());
+    return nullptr;
+  }
   const bool goes_on =
       input.recorded == nullptr ? follow_moveit(input) : change_after(*input.recorded);
   return goes_on ? &report : nullptr;

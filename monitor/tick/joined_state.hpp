@@ -16,8 +16,9 @@ namespace clearance {
 // one between two ticks.
 class JoinedState {
  public:
-  explicit JoinedState(const Scene& scene)
-      : scene_(scene), monitor_(std::make_unique<Monitor>(scene)), ids_(scene) {}
+  // `similar`: that of Monitor.
+  explicit JoinedState(const Scene& scene, const Monitor* similar = nullptr)
+      : scene_(scene), monitor_(std::make_unique<Monitor>(scene, similar)), ids_(scene) {}
 
   // Reads the bytes of save_state(). False: they do not fit this scene, or have values that no
   // monitor of it can have.

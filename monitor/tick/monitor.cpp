@@ -18,6 +18,7 @@
 //   stop           inputs, published pairs     -> stops of robots in the Report
 //   differentiate  published pairs, links      -> gradients of the Report
 //   report         all of these                -> the rest of the Report, which no stage reads
+//   self-test      constant memory             -> SelfTest: whether a bit of it has flipped
 #include "monitor/tick/monitor.hpp"
 
 #include <algorithm>
@@ -32,10 +33,7 @@
 
 namespace clearance {
 Monitor::Monitor(const Scene& scene, const Monitor* similar)
-    : state_(std::make_unique<State>(scene, similar == nullptr
-                                                ? KnownHulls{}
-                                                : KnownHulls{similar->state_->scene.objects,
-                                                             similar->state_->culling.hulls()})) {
+    : state_(std::make_unique<State>(scene, similar == nullptr ? nullptr : similar->state_.get())) {
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     if (scene.objects[i].absent) state_->make_absent(i);
   }
@@ -85,6 +83,7 @@ const Report& Monitor::tick(std::span<const PoseSample> samples,
   s.differentiation.differentiate(s.report.pairs, tick, s.inputs.robots, s.report.gradients);
   s.finish_report(s.scene.budget - budget.left());
   check_report(s.report, s.table.most_error());
+  s.self_test.tick();
   return s.report;
 }
 

@@ -40,6 +40,7 @@ struct InputAge {
 };
 
 class SeenCloud;  // monitor/clouds
+class SelfTest;
 
 // A frame of a sensor, as the tick takes it.
 struct SensorFrame {
@@ -63,7 +64,7 @@ class Monitor {
  public:
   // Allocates all memory that it ever needs. The scene must outlive the monitor. `similar`, if not
   // null, is the monitor of a scene with partly the same bodies. What it knows of their shapes is
-  // used again. It may tick in another thread meanwhile.
+  // used again, if its self-test holds. It may tick in another thread meanwhile.
   explicit Monitor(const Scene& scene, const Monitor* similar = nullptr);
   ~Monitor();
   Monitor(const Monitor&) = delete;
@@ -133,6 +134,10 @@ class Monitor {
   [[nodiscard]] bool uses(const SeenCloud* cloud) const noexcept;
   // The frame of a sensor that the last tick used; its cloud is null: none.
   [[nodiscard]] SensorFrame frame_in_use(std::uint32_t sensor) const noexcept;
+
+  // What each tick checks of the memory that no tick changes. Once it has failed, no report is to
+  // be believed.
+  [[nodiscard]] const SelfTest& self_test() const noexcept;
 
   // What the pair's model error at its last evaluation consists of, by source, the largest first;
   // of first order. Empty: nothing is stated for it, or it was never evaluated. Allocates.

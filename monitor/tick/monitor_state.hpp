@@ -17,6 +17,7 @@
 #include "monitor/schedule/zone_crossings.hpp"
 #include "monitor/tick/conclude.hpp"
 #include "monitor/tick/monitor.hpp"
+#include "monitor/tick/self_test.hpp"
 #include "monitor/zones/contacts.hpp"
 #include "monitor/zones/separations.hpp"
 #include "monitor/zones/zone_levels.hpp"
@@ -61,9 +62,14 @@ struct Monitor::State {
   std::vector<Shown> shown;
   std::unique_ptr<CloudPairs> clouds;  // ingest and evaluate; null: the scene has no sensors
   HiddenPlaces hidden;                 // ingest
+  // No partner and no replay goes on from its state. Made last, of all of the above.
+  SelfTest self_test;
 
-  State(const Scene& the_scene, const KnownHulls& known_hulls);
+  // `similar`: null, or that of the monitor whose hulls are used again.
+  State(const Scene& the_scene, const State* similar);
 
+  // All above that no tick changes, and what it points to.
+  [[nodiscard]] ConstantMemory constant_memory() const;
   [[nodiscard]] TickView view() const noexcept {
     return {inputs.objects,
             parts,

@@ -26,6 +26,13 @@ class Separations {
   void write(std::span<const TrackedObject> objects, std::uint64_t cycle,
              std::int64_t report_delay_ns, Report& report) const noexcept;
 
+  // Calls visit(name, table) with each table that nothing changes after construction.
+  template <class Visit>
+  void each_constant(Visit&& visit) const {
+    visit("zones with separation", zones_);
+    visit("pairs of zones with separation", members_);
+  }
+
  private:
   struct Member {
     std::uint32_t pair;       // index into Scene::pairs

@@ -50,6 +50,16 @@ class ZoneLevels {
     return most_margins_[zone];
   }
 
+  // Calls visit(name, table) with each table that nothing changes after construction.
+  template <class Visit>
+  void each_constant(Visit&& visit) const {
+    visit("first zones of pairs", first_zone_);
+    visit("zones of pairs", zones_);
+    visit("thresholds of pairs", largest_thresholds_);
+    visit("members of zones", members_);
+    visit("margins of zones", most_margins_);
+  }
+
  private:
   // By pair; empty where there are no zones.
   std::vector<std::uint32_t> first_zone_;

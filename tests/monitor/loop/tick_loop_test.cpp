@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
+#include "monitor/tick/self_test.hpp"
 #include "monitor/wire/report_checksum.hpp"
 #include "tests/monitor/loop/listed_ports.hpp"
 #include "tests/monitor/tick/scara_cell.hpp"
@@ -51,6 +54,22 @@ TEST(TickLoop, TakesJointsInBesidePoses) {
   EXPECT_EQ(loop.reports.inputs_before, (std::vector<std::size_t>{1, 3}));
   for (const std::uint32_t link : {3, 4, 5}) EXPECT_GE(loop.statistics.ages[link].age_ns, 0);
   EXPECT_TRUE(loop.statistics.minimum.known);
+}
+
+TEST(TickLoop, EndsBeforeItHandsOverAReportOfATickWhoseSelfTestHasFailed) {
+  Loop loop;
+  double& margin = loop.scene.objects[0].margin;
+  loop.clock.while_asleep = [&](int tick) {
+    if (tick == 3) margin = std::nextafter(margin, 1.0);
+  };
+  TickLoop ticks(loop.scene, loop.poses, {&loop.reports}, loop.clock, {.max_ticks = 1000});
+  const std::uint64_t within = ticks.state().monitor().self_test().ticks();
+  ticks.run(loop.stop);
+  EXPECT_EQ(ticks.state().monitor().self_test().fault(),
+            "the table 'objects' of the scene has changed in memory");
+  EXPECT_EQ(loop.reports.cycles.size() + 1, ticks.state().cycle());
+  EXPECT_LE(ticks.state().cycle(), 2 + within);
+  EXPECT_EQ(loop.reports.all_statistics.size(), 1u) << "the last figures are told";
 }
 
 TEST(TickLoop, TicksOnItsDeadlines) {

@@ -1,0 +1,100 @@
+"""tools/evidence: what it fails for, with one planted fault each, and what it writes of a run.
+
+usage: evidence_test.py BUILD
+"""
+import copy, json, pathlib, re, subprocess, sys, tempfile, unittest
+
+import yaml
+
+sys.dont_write_bytecode = True
+ROOT = pathlib.Path(__file__).resolve().parents[2]
+BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
+sys.path.insert(0, str(ROOT / "tools/evidence_parts"))
+import matrix, sbom
+
+GOOD = {
+    "promises": [{"id": "P1", "text": "Distances of points are right.", "tests": ["Distance.OfPointsIsEuclid"]}],
+    "assumptions": [
+        {"id": "A1", "text": "Bodies are stated.", "detected_by": "none", "why": "Nothing sees them."},
+        {"id": "A2", "text": "Shapes are solid.", "detected_by": "the factories refuse others",
+         "tests": ["Shapes.WhatIsNoSolidIsRefusedWithItsReason"]}],
+}
+
+
+class Evidence(unittest.TestCase):
+    def judged(self, requirements, run=False):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "requirements.yaml"
+            file.write_text(yaml.safe_dump(requirements))
+            return matrix.judge(file, BUILD, pathlib.Path(folder) if run else None)
+
+    def test_HasNoFaultWhereEachTestRunsAndPasses(self):
+        judged = self.judged(GOOD, run=True)
+        self.assertEqual(judged["faults"], [])
+        self.assertEqual([test["outcome"] for entry in judged["matrix"] for test in entry["tests"]], ["passed"] * 2)
+
+    def test_FailsForEachFaultOfTheListByName(self):
+        def without(kind, place, key):
+            wrong = copy.deepcopy(GOOD)
+            del wrong[kind][place][key]
+            return wrong
+
+        def changed(kind, place, key, value):
+            wrong = copy.deepcopy(GOOD)
+            wrong[kind][place][key] = value
+            return wrong
+
+        for wrong, expected in [
+            (without("promises", 0, "tests"), "P1: the promise has no test"),
+            (changed("promises", 0, "tests", []), "P1: the promise has no test"),
+            (changed("promises", 0, "tests", ["Distance.OfPoints"]), "P1: Distance.OfPoints: there is no such test"),
+            (without("assumptions", 0, "detected_by"), "A1: the assumption has no answer"),
+            (without("assumptions", 0, "why"), "A1: found 'detected_by: none'; expected a reason"),
+            (without("assumptions", 1, "tests"), "A2: something detects a breach, and no test shows it"),
+            (changed("assumptions", 1, "id", "A1"), "A1: expected an id of its own"),
+            (changed("promises", 0, "test", "x"), "P1: the key 'test' is not known"),
+            ({**GOOD, "hopes": []}, "the list has 'hopes'"),
+        ]:
+            with self.subTest(expected):
+                faults = self.judged(wrong)["faults"]
+                self.assertTrue(faults and faults[0].startswith(expected), faults)
+
+    def test_CountsWhatFailedOrDidNotRun(self):
+        with tempfile.TemporaryDirectory() as folder:
+            build = pathlib.Path(folder)
+            (build / "bin").mkdir()
+            program = build / "bin/some_tests"
+            cases = [{"name": "Fails", "result": "COMPLETED", "failures": [{}]}, {"name": "Skips", "result": "SKIPPED"}]
+            report = json.dumps({"testsuites": [{"name": "Some", "testsuite": cases}]})
+            program.write_text("#!/bin/sh\ncase $1 in --gtest_list_tests) printf 'Some.\\n  Fails\\n  Skips\\n  Ends\\n';;\n"
+                               f"*) printf '%s' '{report}' >\"${{2#--gtest_output=json:}}\";; esac\n")
+            program.chmod(0o755)
+            wanted = build / "requirements.yaml"
+            tests = ["Some.Fails", "Some.Skips", "Some.Ends"]
+            wanted.write_text(yaml.safe_dump({"promises": [{"id": "P1", "text": "All.", "tests": tests}]}))
+            faults = matrix.judge(wanted, build, build)["faults"]
+        self.assertEqual(faults, ["P1: Some.Fails: failed", "P1: Some.Skips: skipped", "P1: Some.Ends: not run"])
+
+    def test_NamesWhatALibraryIsAndWhereItComesFrom(self):
+        listed = {each["name"]: each for each in sbom.document(ROOT, BUILD)["packages"]}
+        self.assertEqual(listed["clearance"]["licenseDeclared"], "NOASSERTION")
+        for name, how in [("libyaml-cpp0.7", "linked dynamically"), ("libeigen3-dev", "headers compiled in")]:
+            version = subprocess.run(["dpkg-query", "-W", "-f=${Version}", name], capture_output=True, text=True, check=True)
+            self.assertEqual(listed[name]["versionInfo"], version.stdout)
+            self.assertIn(how, listed[name]["sourceInfo"])
+            self.assertNotIn("nothing that is marked", listed[name]["licenseComments"])
+
+    def test_ThePageOfThreatsNamesTestsThatExist(self):
+        page = (ROOT / "monitor/SECURITY.md").read_text()
+        programs = sorted(BUILD.glob("bin/*_tests"))
+        names = {name for program in programs for name in matrix.listed(program)}
+        python = "".join(file.read_text() for file in (ROOT / "tests/python").glob("*_test.py"))
+        tests = re.findall(r"`([A-Z]\w+\.[A-Z]\w+|test_\w+)`", page)
+        self.assertGreater(len(tests), 30)
+        for test in tests:
+            known = f"def {test}(" in python or any(matrix.stands_for(test, name) for name in names)
+            self.assertTrue(known, f"monitor/SECURITY.md names {test}")
+
+
+if __name__ == "__main__":
+    unittest.main()
