@@ -113,7 +113,9 @@ void Recorder::joined(std::span<const std::byte> cdr) {
 // zones of a report, and the next one begins with the state of every zone.
 void Recorder::report(const Report& report, std::span<const SourceUse> sources,
                       std::int64_t publish_ns, std::uint64_t lineage) {
-  if (elapsed(report.now_ns, std::exchange(last_ns_, report.now_ns)) > kOtherRunNs) {
+  // Ticks of a partner that catches up have earlier times, too; partners follow no simulation.
+  const std::int64_t back_ns = elapsed(report.now_ns, std::exchange(last_ns_, report.now_ns));
+  if (lineage == 0 && back_ns > kOtherRunNs) {
     sink_->begin_anew(report.now_ns);
     watch_.change();
     states_all_zones_ = true;
