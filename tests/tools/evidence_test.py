@@ -92,6 +92,8 @@ class Evidence(unittest.TestCase):
         tests = re.findall(r"`([A-Z]\w+\.[A-Z]\w+|test_\w+)`", page)
         self.assertGreater(len(tests), 30)
         for test in tests:
+            if test.startswith("ViewAccess.") and not (BUILD / "bin/view_tests").exists():
+                continue  # built where the page's libraries are
             known = f"def {test}(" in python or any(matrix.stands_for(test, name) for name in names)
             self.assertTrue(known, f"monitor/SECURITY.md names {test}")
 
