@@ -21,6 +21,7 @@
 #include "monitor/client/shared_cell.hpp"
 #include "monitor/dds/dds_arguments.hpp"
 #include "monitor/dds/dds_log.hpp"
+#include "monitor/interface/merge_log_lines.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "tools/merge/command_relay.hpp"
 #include "tools/merge/joined_writer.hpp"

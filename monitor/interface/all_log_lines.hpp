@@ -4,6 +4,7 @@
 #include <tuple>
 
 #include "monitor/interface/log_lines.hpp"
+#include "monitor/interface/merge_log_lines.hpp"
 #include "monitor/interface/plc_log_lines.hpp"
 
 namespace clearance::lines {

@@ -380,31 +380,4 @@ inline constexpr LogLine<Text, Count, Text> kShareSceneRefused{
     "the scene of the share '{}', revision {:016x}, is not taken over, so that this share is not "
     "whole: {}"};
 
-// ---- Shares, as clearance-merge joins them
-
-inline constexpr LogLine<Text, Count, Text> kMergeStarted{"merge-started", kInfo,
-                                                          "cell '{}' in {} shares on {}"};
-inline constexpr LogLine<Text, Count> kShareHeard{"share-heard", kInfo,
-                                                  "the share '{}' (revision {:016x}) is heard"};
-inline constexpr LogLine<Text> kShareMissing{
-    "share-missing", kError,
-    "the share '{}' is missing: its pairs are unknown, and its zones active"};
-inline constexpr LogLine<Text, double> kShareLate{
-    "share-late", kWarn,
-    "the last report of the share '{}' is {:.0f} ms old: its pairs are unknown, and its zones "
-    "active"};
-inline constexpr LogLine<Count, Text> kCellNotRead{
-    "cell-not-read", kError,
-    "ROS 2 gets no markers, numbers and diagnostics: the shares have changed to revision {:016x} "
-    "of the cell, which cannot be read here: {}"};
-inline constexpr LogLine<Text, Count, Count> kShareOtherRevision{
-    "share-other-revision", kError,
-    "the share '{}' has revision {:016x} of the cell and most others have {:016x}: its pairs are "
-    "unknown, and its zones active"};
-
-inline constexpr LogLine<Text> kShareOtherDivision{
-    "share-other-division", kError,
-    "the share '{}' divides the cell otherwise than the others, so that a pair may be in no share: "
-    "its pairs are unknown, and its zones active"};
-
 }  // namespace clearance::lines

@@ -99,8 +99,8 @@ TEST(SeparationOverDds, ComesWithEveryTickAndIsUnknownWhenThePosesEnd) {
 
 // The oracle: S_p of a robot that stands, with the delay and the ages that the same tick states.
 TEST(SeparationOverDds, CountsTheMeasuredDelayAndIsFailSafeBeyondTheLimitAsAReplayIs) {
-  constexpr double kStated = 0.06;              // s
-  constexpr std::int64_t kLimit = 150'000'000;  // ns, below the age limit
+  constexpr double kStated = 0.06;                      // s
+  constexpr std::int64_t kResponseLimit = 150'000'000;  // ns, below the age limit
   std::string text = kPersonAndRobot;
   const auto replace = [&text](const std::string& what, const std::string& by) {
     text.replace(text.find(what), what.size(), by);
@@ -140,7 +140,7 @@ TEST(SeparationOverDds, CountsTheMeasuredDelayAndIsFailSafeBeyondTheLimitAsARepl
     const clearance_msg_PairSeparation& pair = separation->pairs._buffer[0];
     const std::int64_t age = std::max(pair.age_human_ns, pair.age_robot_ns);
     if (age < 0) continue;
-    if (delay < 0 || age + delay > kLimit) {
+    if (delay < 0 || age + delay > kResponseLimit) {
       ++beyond;
       EXPECT_EQ(pair.validity, 0) << separation->cycle;
       EXPECT_EQ(separation->zones._buffer[0].scaling, 0.0);

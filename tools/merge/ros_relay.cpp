@@ -6,6 +6,7 @@
 
 #include "monitor/app/log_line.hpp"
 #include "monitor/app/ros_outputs.hpp"
+#include "monitor/interface/merge_log_lines.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/wire/convert.hpp"
 

@@ -67,10 +67,10 @@ class PublishingSink final : public ReportSink {
 };
 
 struct RunOf {
-  RunOf(Scene scene, std::vector<std::int64_t> delays, PoseSource& poses)
-      : scene(std::move(scene)) {
+  RunOf(Scene the_scene, std::vector<std::int64_t> delays, PoseSource& poses)
+      : scene(std::move(the_scene)) {
     sink.delays = std::move(delays);
-    TickLoop loop(this->scene, poses, {&sink}, clock, {.max_ticks = sink.delays.size()});
+    TickLoop loop(scene, poses, {&sink}, clock, {.max_ticks = sink.delays.size()});
     const std::atomic<bool> stop = false;
     loop.run(stop);
   }
