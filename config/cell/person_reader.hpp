@@ -11,7 +11,7 @@ namespace clearance {
 struct PersonKeys {
   double stature = 0.0;  // m
   double error = 0.0;    // m: no point of the body is farther outside the capsules
-  std::string id;        // empty: no tracker says where the person is
+  std::string id;        // of the body; empty: the name of the robot stands for it
 };
 
 // `robot` is the map of the whole robot, whose keys that no person can have are refused.

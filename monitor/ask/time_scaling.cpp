@@ -61,6 +61,12 @@ std::uint32_t MotionSearch::limited_robot(std::uint32_t separated) const noexcep
 std::optional<std::string> MotionSearch::fault_of_scaling() const {
   for (std::uint32_t i = 0; i < separated_.size(); ++i) {
     const std::uint32_t robot = limited_robot(i);
+    const Zone& zone = scene_.zones[separated_[i].zone];
+    if (posture_.is_of_question(robot) && zone.separation->reaction_is_measured) {
+      return "the zone \"" + zone.name +
+             "\" states controller_time_ms: a motion is timed only if it states reaction_time_ms, "
+             "since what reports take is not known before it is made";
+    }
     if (posture_.is_of_question(robot) && posture_.may_deviate_by_assumption(robot)) {
       return "\"" + scene_.objects[robot].name +
              "\" may move by its assumed speed: a motion is timed only if the question states that "

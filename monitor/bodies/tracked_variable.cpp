@@ -101,6 +101,10 @@ struct PositionCandidate {
   // A joint that becomes faster is not believed to brake, until its sender begins anew.
   void note_braking() const noexcept {
     const double speed = std::max(std::abs(state.velocity), state.sent_speed);
+    if (state.slowest_braking == kInfinity) {
+      state.braking_from = speed;
+      state.braking_since_ns = stamp_ns;
+    }
     state.slowest_braking = sample.stopping ? std::min(state.slowest_braking, speed) : kInfinity;
     state.is_stopping =
         sample.stopping && state.velocity_known && speed <= kNoisy * state.slowest_braking;
@@ -123,7 +127,8 @@ double largest_distance(const JointVariable& variable, const TrackedVariable& st
 }  // namespace
 
 bool TrackedVariable::is_sound(const TrackedVariable& own) const noexcept {
-  const bool are_speeds = may_have_moved >= 0.0 && sent_speed >= 0.0 && slowest_braking >= 0.0;
+  const bool are_speeds =
+      may_have_moved >= 0.0 && sent_speed >= 0.0 && slowest_braking >= 0.0 && braking_from >= 0.0;
   return are_flags(velocity_known, is_stopping, velocities_contradict, outside_limits) &&
          input.is_sound(own.input) && usable(position) && std::isfinite(velocity) && are_speeds &&
          std::isfinite(sent_speed) && plausibility.is_sound();

@@ -24,8 +24,10 @@ struct TrackedVariable {
   // speed nor limits bound the motion.
   double may_have_moved = 0.0;
   double sent_speed = 0.0;  // that was sent with the position; 0: none was sent
-  // The least speed since its brakes have been stated to act, rad/s or m/s; infinity: they are not.
-  double slowest_braking = kInfinity;
+  // Since its brakes have been stated to act: the least speed, rad/s or m/s; infinity: they are
+  // not. The speed at first, and the stamp of that position.
+  double slowest_braking = kInfinity, braking_from = 0.0;
+  std::int64_t braking_since_ns = 0;
   bool is_stopping = false;            // its brakes act, and its speed has not risen since
   bool velocities_contradict = false;  // the sent velocities say less than the positions show
   bool outside_limits = false;         // a position was refused for that since one was taken

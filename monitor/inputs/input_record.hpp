@@ -45,7 +45,7 @@ struct InputRecord {
 
   // `own`: before anything was heard.
   [[nodiscard]] bool is_sound(const InputRecord& own) const noexcept {
-    return are_flags(has_value, late, contradicted, ages) && ages == own.ages &&
+    return are_flags(has_value, late, contradicted, unanswered, ages) && ages == own.ages &&
            (has_value || ages) && contradiction.is_sound() && owner.is_sound(own.owner);
   }
 

@@ -1,9 +1,9 @@
 // The state of a monitor as bytes, for a monitor of the same scene in the same build elsewhere.
 // Both sides go through the same lists in the same order.
 //
-// Bytes from elsewhere may be forged. So each value that was taken is checked before it is used
-// (`is_sound`): flags and enumerators are some, indices are of the scene, numbers are finite, and
-// what the scene determines is what this scene has.
+// Bytes from elsewhere may be forged. So what was taken is checked before it is used (`is_sound`):
+// flags and enumerators are some, indices are of the scene, poses, positions and bounds are such,
+// and what the scene determines is what this scene has. Stamps and histories may be any.
 #pragma once
 
 #include <cstddef>

@@ -48,9 +48,11 @@ bool TrackedBodies::decode(std::uint32_t, const RawMessage& message, const Now& 
 void TrackedBodies::settle(const Now& now) {
   if (!is_used()) return;
   if (!heard_ns_) heard_ns_ = now.monotonic_ns;
-  if (is_silent_ || now.monotonic_ns - *heard_ns_ < kSilentNs) return;
-  is_silent_ = true;
-  out_.tell(News(lines::kBodiesSilent, topic_));
+  if (now.monotonic_ns - *heard_ns_ < kSilentNs) return;
+  // Silence is handed on again after a while, for the same reason as a list.
+  if (is_silent_ && now.monotonic_ns - handed_on_ns_ < kSilentNs) return;
+  if (!std::exchange(is_silent_, true)) out_.tell(News(lines::kBodiesSilent, topic_));
+  handed_on_ns_ = now.monotonic_ns;
   use_({.type = moveit::RawScene::Type::kTrackedBodies,
         .topic = topic_,
         .sent_ns = now.realtime_ns});

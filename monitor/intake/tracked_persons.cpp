@@ -8,8 +8,8 @@
 namespace clearance {
 namespace {
 
-// What a person of the cell is by the list: absent, or there with this body; empty: nothing says
-// where.
+// Of a person of the cell by the list. Without a value: absent. The id of a body: there, with this
+// body. Empty: there, and nothing says where.
 using State = std::optional<std::string>;
 
 bool is_absent(const Robot& person, const Scene& scene) {
@@ -37,9 +37,14 @@ std::vector<State> states_by(std::vector<std::string> bodies, std::span<const Ro
       bodies.erase(found);
     }
   }
+  // Neither two persons nor a person and another robot can have one name.
+  const auto is_taken = [&](const std::string& body) {
+    return std::ranges::find(states, State(body)) != states.end() ||
+           std::ranges::find(scene.robots, body, &Robot::name) != scene.robots.end();
+  };
   std::size_t given = 0;
   for (const std::string& body : bodies) {
-    if (given == free.size() || !is_body_id(body)) {
+    if (given == free.size() || !is_body_id(body) || is_taken(body)) {
       states.back() = "";
     } else {
       states[free[given++]] = body;

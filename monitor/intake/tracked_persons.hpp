@@ -15,8 +15,9 @@ namespace clearance {
 
 // A person of the cell whose body is in the list keeps it. The others get bodies that have none, in
 // the order of both; who is left over is absent. If bodies are left over, the last person is there
-// and nothing says where: it stands for them. Nothing: it is not known which bodies are there, and
-// so it is with all persons. The list of a person's state that stays is empty.
+// and nothing says where: it stands for them. So it does for a body that is named twice, or like a
+// robot of the cell. Without `bodies`, it is not known which are there, and so it is with all
+// persons. Persons that stay as they are need no change.
 [[nodiscard]] std::vector<CellChange> changes_by_bodies(
     const std::optional<std::vector<std::string>>& bodies, const Scene& scene);
 

@@ -186,7 +186,7 @@ TickTime TickPartner::own_time(std::int64_t due) noexcept {
   const std::int64_t at_due = read.now_ns + early + ahead_of_own_ns_;
   const std::int64_t most_late = std::min(options_.period_ns / 2, kMostLateNs);
   const std::int64_t now = at_due + std::max<std::int64_t>(0, -most_late - early);
-  const std::int64_t told = std::max(now, time_.now_ns + 1);
+  const std::int64_t told = std::max(now, less(time_.now_ns, -1));
   told_late_ns_ = told - at_due;
   return {told, offset_ns_ + read.clock_offset_ns - own_offset_ns_, report_delay_ns_};
 }

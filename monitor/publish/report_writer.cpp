@@ -242,7 +242,6 @@ void ReportWriter::write_report(const QueuedReport& queued) {
     return note_delay(queued, false);
   }
   const bool published = write_distances(queued, tag);
-  note_delay(queued, published);
   if (leads_ && separated_count(now_->cell.scene).any()) write_separation(queued.report);
   if (leads_ && now_->cell.scene.gradients) {
     clearance_msg_Gradients& gradients = now_->gradients.of(queued.report, dds_time());
@@ -251,6 +250,7 @@ void ReportWriter::write_report(const QueuedReport& queued) {
     write(TopicKind::kGradients, gradients_, &gradients, "gradients");
   }
   zones_.write(queued.report, now_->pairs);
+  note_delay(queued, published);
   if (also_ != nullptr && leads_) also_->report_ended();
   contact_log_.note(queued.report.contacts);
   if (published) published_ = queued.report.cycle;

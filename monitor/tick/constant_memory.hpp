@@ -33,7 +33,7 @@ struct ConstantBlock {
 
 class ConstantMemory {
  public:
-  // No block that add() makes costs more; a value is not divided.
+  // No block that add() makes costs more: what is larger is divided.
   explicit ConstantMemory(std::size_t most_cost) : most_cost_(most_cost) {}
 
   // The owner of the tables that follow: "the object 'table'".

@@ -1,5 +1,5 @@
 // Looks for bits that have flipped in what a monitor holds as constant, some of it in each tick,
-// and asks a query whose answer is known. README.md here says what this finds, and what it does
+// and asks a query whose answer is known. SELF_TEST.md says what this finds, and what it does
 // not.
 #pragma once
 

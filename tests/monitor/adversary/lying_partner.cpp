@@ -32,7 +32,8 @@ const Report* LyingPartner::tick(const Report& of_loop) {
   if (!has_begun_) return nullptr;
   for (const PoseBatch& batch : batches_) static_cast<void>(state_.use(batch));
   batches_.clear();
-  const Report& report = state_.tick({of_loop.now_ns, of_loop.clock_offset_ns});
+  const Report& report =
+      state_.tick({of_loop.now_ns, of_loop.clock_offset_ns, of_loop.report_delay_ns});
   state_.clear();
   // Until the renewed monitor is in force, the loop has bounds that it has found before.
   const bool is_same_age = offer_.in_force_from() != 0 && report.cycle >= offer_.in_force_from();

@@ -74,6 +74,8 @@ TEST_F(TrackedPersons, OfWhomThereAreTooManyMakeTheLastOneUnknown) {
   EXPECT_THAT(after({{"b1", "b3"}}), ElementsAre("b1", "b3"));
   EXPECT_THAT(after({{"b1", "b3", "b3"}}), ElementsAre("b1", "unknown")) << "one id for two";
   EXPECT_THAT(after({{"b1", "not an id"}}), ElementsAre("b1", "unknown"));
+  EXPECT_THAT(after({{"one"}}), ElementsAre("absent", "unknown")) << "the name of a robot";
+  EXPECT_THAT(after({{"b5", "b5"}}), ElementsAre("b5", "unknown")) << "a place is free for each";
 }
 
 TEST_F(TrackedPersons, AreUnknownWhileNothingSaysWhichAreThere) {
@@ -141,13 +143,16 @@ TEST_F(TrackedBodiesOfIntake, AreUnknownAfterASecondWithoutAList) {
   }
   ASSERT_EQ(came_.size(), 1u);
   EXPECT_TRUE(said().empty()) << "both are unknown already";
+  heard_.pass(TrackedBodies::kSilentNs);
+  heard_.settle();
+  EXPECT_EQ(came_.size(), 2u) << "the change may have been refused";
   EXPECT_EQ(heard_.told(lines::kBodiesSilent.code), 1u);
   EXPECT_TRUE(send({}));
-  ASSERT_EQ(came_.size(), 2u);
+  ASSERT_EQ(came_.size(), 3u);
   EXPECT_EQ(said().size(), 2u);
   heard_.pass(TrackedBodies::kSilentNs);
   heard_.settle();
-  EXPECT_EQ(came_.size(), 3u);
+  EXPECT_EQ(came_.size(), 4u);
   EXPECT_EQ(heard_.told(lines::kBodiesSilent.code), 2u);
 }
 

@@ -24,6 +24,7 @@
 #include "tests/shared/allocation_count.hpp"
 #include "tests/shared/places.hpp"
 #include "tests/shared/random.hpp"
+#include "tests/shared/repeats.hpp"
 #include "tests/shared/simulated_samples.hpp"
 
 namespace clearance {
@@ -96,7 +97,7 @@ INSTANTIATE_TEST_SUITE_P(SelfTests, FlippedConstants,
 TEST_P(FlippedConstants, AreFoundWithinTheNumberOfTicksThatIsToldAndNamed) {
   MovingCell moving(GetParam());
   const char* const asked = std::getenv("CLEARANCE_FLIPS");
-  const int flips = (asked == nullptr ? 10'000 : std::atoi(asked)) / 4;
+  const int flips = (asked == nullptr ? static_cast<int>(repeats(10'000)) : std::atoi(asked)) / 4;
   Random random(63);
   const auto blocks = moving.tick().memory().blocks();
   const std::size_t bytes = moving.tick().bytes();

@@ -110,8 +110,8 @@ json pair_distance(Cdr& cdr) {
 json distances(Cdr& cdr) {
   json out;
   for (const char* name : {"daemon", "cycle"}) out[name] = take<std::uint64_t>(cdr);
-  for (const char* name :
-       {"now_ns", "clock_offset_ns", "newest_pose_ns", "oldest_pose_ns", "publish_ns"})
+  for (const char* name : {"now_ns", "clock_offset_ns", "report_delay_ns", "newest_pose_ns",
+                           "oldest_pose_ns", "publish_ns"})
     out[name] = take<std::int64_t>(cdr);
   out["scene_revision"] = take<std::uint64_t>(cdr);
   for (const char* name : {"minimum_known", "minimum_certified"}) out[name] = take<bool>(cdr);
