@@ -72,6 +72,18 @@ TEST(TimeScaling, IsTheLargestFactorThatKeepsTheProtectiveDistance) {
   EXPECT_EQ(answered(scene, question).scaling.factor, 0.0);
 }
 
+// What reports take is measured while the daemon runs: no question knows it.
+TEST(TimeScaling, IsRefusedIfAZoneMeasuresItsReaction) {
+  Scene scene = scara_beside("max_speed: 2, sphere: {radius: 0.1}", kZone);
+  scene.zones.at(0).separation->reaction_is_measured = true;
+  Question question = swing(-1.0, 0.6);
+  question.others = OthersMove::kNot;
+  question.poses = {{.object = "post", .world_from_object = {.position = {3.0, 0.0, 0.0}}}};
+  EXPECT_TRUE(std::holds_alternative<Answer>(ask(scene, question)));
+  question.time_scaling = true;
+  EXPECT_TRUE(std::holds_alternative<std::string>(ask(scene, question)));
+}
+
 TEST(TimeScaling, HasNoLimitWithoutSuchAZone) {
   Question question = swing(-1.0, 0.6);
   question.time_scaling = true;
