@@ -65,8 +65,8 @@ TEST_F(ViewOfPartners, ShowsOneStreamAndSaysWhichOneIsMissing) {
   ChildProcess watch(test::kWatch, with({"--plain"}, dds_arguments(dds)));
   EXPECT_TRUE(eventually([&] { return watch.wrote("partners agree"); }));
   const std::string figures = "tick p50";  // of the leader, whichever daemon the report is of
-  ASSERT_TRUE(eventually([&] { return lines_since(watch, figures).size() >= 4; },
-                         std::chrono::seconds(60)))
+  ASSERT_TRUE(
+      eventually([&] { return lines_since(watch, figures).size() >= 4; }, std::chrono::seconds(60)))
       << watch.output();
   EXPECT_THAT(lines_since(watch, figures), testing::Each(HasSubstr(figures)));
   View view(arguments);
