@@ -78,8 +78,9 @@ class ObeyingRobot {
   // One tick on, after a report with this scaling.
   void obey(double scaling) {
     const bool may_grow = scaling >= 1.0 && accelerates_;
-    commands_.push_back(
-        {.cap = may_grow ? kInfinity : scaling * said().scaling, .reported = tick_});
+    double cap = may_grow ? kInfinity : scaling * said().scaling;
+    if (said().stopping) cap = 0.0;  // such a report admits the stop, and no motion after it
+    commands_.push_back({.cap = cap, .reported = tick_});
     const Command command = commands_.front();
     commands_.pop_front();
     ++tick_;
