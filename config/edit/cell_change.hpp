@@ -42,8 +42,8 @@ struct RemoveObject {
 struct SetAbsent {
   std::string object;
   bool absent = true;
-  // Of a person: the id of the body that stands for it from now on, as in /humans/bodies. Empty: no
-  // tracker says where the person is. Nothing: the id stays.
+  // The id of the body that stands for a person from now on, as in /humans/bodies. Empty: no
+  // tracker says where the person is. Without a value, the id stays.
   std::optional<std::string> id = {};
 };
 

@@ -56,7 +56,7 @@ struct Object {
   double shape_error = 0.0;   // stated, m: no point of the true body is farther from its parts
   RestingOn resting_on = {};  // of a fixed object that is attached to another
   double mass = kInfinity;    // kg; infinity: not stated
-  // Of a person, m/s: the speed of this part of the body towards a robot, whatever it does
+  // The speed at which this part of a person may come towards a robot, whatever it does, m/s
   // (ISO 13855). Zones with `separation` count it unless they state one.
   double approach_speed = 1.6;
   bool may_jump = false;  // its poses may jump, as a simulation's do
@@ -106,7 +106,7 @@ struct Scene {
   // Index into `robots`: ticks follow the joint states of this one. kFreeRunning: they follow none.
   static constexpr std::uint32_t kFreeRunning = std::numeric_limits<std::uint32_t>::max();
   std::uint32_t tick_on = kFreeRunning;
-  // From a tick to the next one, s: ticks that follow a robot may be faster or slower by a 64th.
+  // The time between two ticks, s: those that follow a robot may be faster or slower by a 64th.
   [[nodiscard]] double shortest_period() const noexcept { return (1.0 - slew()) / rate_hz; }
   [[nodiscard]] double longest_period() const noexcept { return (1.0 + slew()) / rate_hz; }
   [[nodiscard]] double slew() const noexcept { return tick_on == kFreeRunning ? 0.0 : 1.0 / 64; }

@@ -62,8 +62,8 @@ struct Extension {
 struct CarriedLoad {
   double full = 0.0;  // the maker's 100 %; 0: the cell states the load, or the worst one counts
   double tool = 0.0;  // what the arm always carries
-  // What it carries with the tool, or infinity if a mass is not stated; and the step of the table
-  // that has it, as a share of `full`.
+  // The mass that it carries with the tool, or infinity if not all is stated. `step`: the step of
+  // the table that has it, as a share of `full`.
   double mass = 0.0, step = 0.0;
 };
 

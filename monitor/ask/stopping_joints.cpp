@@ -112,7 +112,7 @@ void StoppingJoints::read(const Inputs& inputs, Joint& joint) noexcept {
   is_usable_ = is_usable_ && is_known && joint.speed < kInfinity;
 }
 
-// From the oldest position in use until the brakes act, at the latest, s. Those of a stop in
+// The longest time from the oldest position in use until the brakes act, s. Those of a stop in
 // progress act already.
 double StoppingJoints::reaction() const noexcept {
   if (is_stopping_) return age_;

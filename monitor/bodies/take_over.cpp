@@ -3,7 +3,7 @@
 namespace clearance {
 namespace {
 
-// What follows from the body stays.
+// Keeps what follows from the body: bytes and former scenes do not change it.
 void keep_body(const TrackedObject& own, TrackedObject& now) noexcept {
   now.landmarks = own.landmarks;
   now.bounding_radius = own.bounding_radius;

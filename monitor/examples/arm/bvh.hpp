@@ -34,7 +34,7 @@ struct Bvh {
 // Returns where the joints are, in the frame and the unit of the file.
 [[nodiscard]] std::vector<Vec3> places_of(const Bvh& motion, std::size_t frame);
 
-// Where the joints of a person are, in the world: z up, and x forward in the rest pose.
+// The places of the joints of a person, in the world: z up, and x forward in the rest pose.
 struct Keypoints {
   Vec3 neck, head_top;
   // Left, then right.
