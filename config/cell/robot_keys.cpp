@@ -59,15 +59,8 @@ void RobotKeysReader::read_visual_links(const YamlNode& node) {
 // Reads the robot's joint-state topic on ROS 2, and whether its stamps or its times of sending
 // count.
 void RobotKeysReader::read_joint_topic(MapReader& map) {
-  if (const YamlNode* node = map.optional("joint_states")) {
-    const auto topic = read_text(*node, "a topic of ROS 2", diagnostics_);
-    if (topic && !topic->starts_with('/')) {
-      diagnostics_.add(*node, fmt::format("found '{}'; expected a topic of ROS 2 with its "
-                                          "namespace: /joint_states, /left/joint_states",
-                                          *topic));
-    }
-    keys_.joint_states = topic.value_or("");
-  }
+  if (const YamlNode* node = map.optional("joint_states"))
+    keys_.joint_states = read_ros_topic(*node, "/left/joint_states", diagnostics_);
   if (const YamlNode* node = map.optional("stamps"))
     keys_.stamps = read_stamps(*node, diagnostics_);
 }

@@ -101,6 +101,15 @@ std::optional<std::string> read_frame(const YamlNode& node, Diagnostics& diagnos
   return std::nullopt;
 }
 
+std::string read_ros_topic(const YamlNode& node, std::string_view example,
+                           Diagnostics& diagnostics) {
+  const auto topic = read_text(node, "a topic of ROS 2", diagnostics);
+  if (!topic || is_ros_topic(*topic)) return topic.value_or("");
+  diagnostics.add(node, fmt::format("found '{}'; expected a topic of ROS 2 with its namespace: {}",
+                                    *topic, example));
+  return "";
+}
+
 RosStamps read_stamps(const YamlNode& node, Diagnostics& diagnostics) {
   const auto text = read_text(node, "message or sent", diagnostics);
   if (text && *text != "message" && *text != "sent") {

@@ -51,7 +51,6 @@ class SensorReader {
 
  private:
   void read_topics(const YamlNode& node, MapReader& map, Sensor& sensor);
-  [[nodiscard]] std::string read_topic(const YamlNode& node) const;
   // Keys that are there, but belong to other sensors.
   void refuse(std::initializer_list<std::pair<const YamlNode*, const char*>> keys,
               const char* of) const;
@@ -69,15 +68,6 @@ class SensorReader {
   Diagnostics& diagnostics_;
   std::map<std::string, int> lines_;  // of the topics of images and points
 };
-
-std::string SensorReader::read_topic(const YamlNode& node) const {
-  const auto topic = read_text(node, "a topic of ROS 2", diagnostics_);
-  if (!topic || is_ros_topic(*topic)) return topic.value_or("");
-  diagnostics_.add(node, fmt::format("found '{}'; expected a topic of ROS 2 with its namespace: "
-                                     "/camera/depth/image_rect_raw",
-                                     *topic));
-  return "";
-}
 
 void SensorReader::refuse(std::initializer_list<std::pair<const YamlNode*, const char*>> keys,
                           const char* of) const {
@@ -105,7 +95,7 @@ void SensorReader::read_topics(const YamlNode& node, MapReader& map, Sensor& sen
   sensor.kind = image != nullptr    ? SensorKind::kDepthImage
                 : points != nullptr ? SensorKind::kPoints
                                     : SensorKind::kOctomap;
-  sensor.topic = read_topic(topic);
+  sensor.topic = read_ros_topic(topic, "/camera/depth/image_rect_raw", diagnostics_);
   if (const auto [same, is_new] = lines_.emplace(sensor.topic, topic.line);
       !is_new && !sensor.topic.empty()) {
     diagnostics_.add(topic, fmt::format("found the topic '{}' again; expected it once (first in "
@@ -114,7 +104,7 @@ void SensorReader::read_topics(const YamlNode& node, MapReader& map, Sensor& sen
   }
   if (image == nullptr) return refuse({{info, "camera_info"}}, "depth images only");
   sensor.camera_info = info != nullptr
-                           ? read_topic(*info)
+                           ? read_ros_topic(*info, "/camera/depth/camera_info", diagnostics_)
                            : sensor.topic.substr(0, sensor.topic.rfind('/') + 1) + "camera_info";
 }
 

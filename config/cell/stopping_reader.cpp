@@ -11,6 +11,7 @@
 
 #include "config/cell/joint_stop_reader.hpp"
 #include "config/cell/measured_steps.hpp"
+#include "config/cell/ros_reader.hpp"
 #include "config/cell/stop_steps.hpp"
 #include "config/cell/stop_table.hpp"
 #include "config/cell/stopped_joints.hpp"
@@ -131,6 +132,8 @@ void StoppingReader::read_conditions(MapReader& map) {
     }
   }
   conditions_.category = stops.category;
+  if (const YamlNode* stated = map.optional("stated_on"))
+    stops.stated_on = read_ros_topic(*stated, "/arm/stopping", diagnostics_);
   const auto is_map = [](const YamlNode* node) {
     return node != nullptr && node->kind == YamlNode::Kind::kMap;
   };

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <string>
 #include <vector>
 
 namespace clearance {
@@ -79,6 +80,9 @@ struct RobotStops {
   std::vector<StopStep> steps;
   Extension extension;
   CarriedLoad load;
+  // The topic of ROS 2 that says whether the brakes act; empty: none, or `stopping` of our own
+  // joint states.
+  std::string stated_on;
   // By joint, rad/s2 or m/s2: until the brakes act, and while the path is kept, the velocity
   // changes by no more than this per second. Infinity: not stated.
   std::vector<double> max_accelerations;

@@ -9,6 +9,7 @@
 #include "monitor/inputs/source_numbers.hpp"
 #include "monitor/intake/own_batches.hpp"
 #include "monitor/intake/ros_clock.hpp"
+#include "monitor/intake/stated_stops.hpp"
 #include "monitor/intake/tracked_bodies.hpp"
 
 namespace clearance {
@@ -35,7 +36,8 @@ Intake::Intake(const Cell& cell, IntakeOptions options, Use use)
   add<RosClock>(options_.time, *this);
   add<OwnPoses>(cell.scene, topics_->poses, options_.most_samples, *this);
   add<OwnJointStates>(cell.scene, topics_->joint_states, options_.most_joints, *this);
-  joint_states_ = add<RosJointStates>(cell.scene, joint_states, *this);
+  const StatedStops* const stops = add<StatedStops>(cell.scene, *this);
+  joint_states_ = add<RosJointStates>(cell.scene, joint_states, *stops, *this);
   transforms_ = add<RosTransforms>(cell, from, *this, options_.use_sensor);
   add<MoveItMessages>(cell, options_.use_scene, *this);
   add<TrackedBodies>(cell, options_.use_scene, *this);

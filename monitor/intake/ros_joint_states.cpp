@@ -18,8 +18,9 @@ constexpr std::size_t kMostUnknownNames = 64;
 
 }  // namespace
 
-RosJointStates::RosJointStates(const Scene& scene, RosJointStatesOptions options, Outlet& out)
-    : scene_(&scene), options_(std::move(options)), out_(out) {}
+RosJointStates::RosJointStates(const Scene& scene, RosJointStatesOptions options,
+                               const StatedStops& stops, Outlet& out)
+    : scene_(&scene), options_(std::move(options)), stops_(stops), out_(out) {}
 
 void RosJointStates::change(const Cell& cell) {
   scene_ = &cell.scene;
@@ -129,6 +130,16 @@ void RosJointStates::note_unused(const Topic& topic, Writer& writer) {
   out_.tell(News(lines::kUnknownRosJoints, writer.source.view(), added));
 }
 
+void RosJointStates::give(Writer& writer, std::uint64_t handle) {
+  batch_.source = writer.source;
+  batch_.sequence_number = ++writer.batches;
+  const std::size_t used = std::min(batch_.joints.size(), options_.most_joints);
+  const std::size_t cut = batch_.joints.size() - used;
+  batch_.joints.resize(used);
+  out_.give(batch_, handle, cut);
+}
+
+// All joints of a batch are stopping, or none is: one message may have two robots that differ.
 bool RosJointStates::decode(std::uint32_t port, const RawMessage& message, const Now&,
                             TopicCounts& counts) {
   if (!decoder_.decode(message.cdr, states_, message.bytes)) return false;
@@ -136,12 +147,20 @@ bool RosJointStates::decode(std::uint32_t port, const RawMessage& message, const
   Writer& writer = writer_of(topic, message.writer);
   note_unused(topic, writer);
   from_wire(*states_, topic.names, time_of(message, topic, writer, counts), batch_);
-  batch_.source = writer.source;
-  batch_.sequence_number = ++writer.messages;
-  const std::size_t used = std::min(batch_.joints.size(), options_.most_joints);
-  const std::size_t cut = batch_.joints.size() - used;
-  batch_.joints.resize(used);
-  out_.give(batch_, message.writer, cut);
+  for (JointSample& sample : batch_.joints)
+    sample.stopping = stops_.is_stopping(sample.variable, sample.stamp_ns, message.sent_ns);
+  const auto moving = std::ranges::stable_partition(batch_.joints, &JointSample::stopping);
+  std::vector<JointSample> others;
+  if (moving.begin() != batch_.joints.begin()) {
+    others.assign(moving.begin(), moving.end());
+    batch_.joints.erase(moving.begin(), moving.end());
+  }
+  give(writer, message.writer);
+  if (others.empty()) return true;
+  batch_.scene_revision = 0;
+  batch_.samples.clear();
+  batch_.joints = std::move(others);
+  give(writer, message.writer);
   return true;
 }
 

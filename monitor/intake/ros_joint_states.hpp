@@ -12,6 +12,7 @@
 #include "config/scene/scene.hpp"
 #include "monitor/intake/decoder.hpp"
 #include "monitor/intake/stamp_check.hpp"
+#include "monitor/intake/stated_stops.hpp"
 #include "monitor/wire/cdr.hpp"
 #include "monitor/wire/joint_names.hpp"
 
@@ -29,8 +30,9 @@ class RosJointStates final : public Decoder {
  public:
   static constexpr std::size_t kMostTopics = 32;
 
-  // The scene and the outlet must outlive this.
-  RosJointStates(const Scene& scene, RosJointStatesOptions options, Outlet& out);
+  // The scene, the stops and the outlet must outlive this.
+  RosJointStates(const Scene& scene, RosJointStatesOptions options, const StatedStops& stops,
+                 Outlet& out);
 
   [[nodiscard]] std::optional<Wanted> wants(const TopicName& topic) override;
   [[nodiscard]] std::vector<NamedTopic> named() const override;
@@ -50,7 +52,7 @@ class RosJointStates final : public Decoder {
     // The first writer of a topic gets the name of the topic, "/left/joint_states"; later writers
     // add "#2" and so on. A name that is too long is cut at its beginning.
     SourceName source;
-    std::uint64_t messages = 0;
+    std::uint64_t batches = 0;
     StampCheck stamps = {};
     bool no_positions_said = false;
   };
@@ -68,8 +70,12 @@ class RosJointStates final : public Decoder {
                                      TopicCounts& counts);
   void note_unused(const Topic& topic, Writer& writer);
 
+  // Hands on batch_ as the next one of the writer.
+  void give(Writer& writer, std::uint64_t handle);
+
   const Scene* scene_;
   RosJointStatesOptions options_;
+  const StatedStops& stops_;
   Outlet& out_;
   std::vector<Topic> topics_;  // by port
   std::set<std::string> unknown_names_;

@@ -91,6 +91,7 @@ void ConstantMemory::add_inside(const char* table, const Robot& robot) {
   (*this)("joints", robot.joints);
   (*this)("notes", robot.notes);
   const RobotStops& stops = robot.stopping;
+  add_inside("stops", stops.stated_on);
   (*this)("stops", stops.joints);
   (*this)("steps of stops", stops.steps);
   (*this)("levers of the extension", stops.extension.levers);

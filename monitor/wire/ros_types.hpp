@@ -37,6 +37,11 @@ topic_descriptor<std_msgs_msg_dds__Float64_>() noexcept {
 }
 template <>
 [[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<std_msgs_msg_dds__Bool_>() noexcept {
+  return std_msgs_msg_dds__Bool__desc;
+}
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
 topic_descriptor<diagnostic_msgs_msg_dds__DiagnosticArray_>() noexcept {
   return diagnostic_msgs_msg_dds__DiagnosticArray__desc;
 }
@@ -91,6 +96,10 @@ inline constexpr RosType kRosDiagnostics{
 inline constexpr RosType kRosFloat64{
     &std_msgs_msg_dds__Float64__desc,
     "typehash=RIHS01_705ba9c3d1a09df43737eb67095534de36fd426c0587779bda2bc51fe790182a;", false, 10};
+
+inline constexpr RosType kRosBool{
+    &std_msgs_msg_dds__Bool__desc,
+    "typehash=RIHS01_feb91e995ff9ebd09c0cb3d2aed18b11077585839fb5db80193b62d74528f6c9;", false, 16};
 
 inline constexpr RosType kRosIdsList{
     &hri_msgs_msg_dds__IdsList__desc,

@@ -60,6 +60,14 @@ TEST_F(Stopping, StatesTheCategoryAndThePath) {
               mistake_at("cell.yaml:5", "3", "stop category of IEC 60204-1"));
 }
 
+TEST_F(Stopping, InProgressIsStatedOnATopicOfRos2) {
+  const RobotStops stops =
+      scene(cell("{reaction_ms: 0, time_ms: 300, stated_on: /arm/stopping}")).robots[0].stopping;
+  EXPECT_EQ(stops.stated_on, "/arm/stopping");
+  EXPECT_THAT(errors(cell("{reaction_ms: 0, time_ms: 300, stated_on: arm/stopping}")),
+              mistake_at("cell.yaml:5", "'arm/stopping'", "topic of ROS 2 with its namespace"));
+}
+
 TEST_F(Stopping, OfOneJointReplacesWhatIsSaidOfAll) {
   const Scene arm =
       scene(cell("{reaction_ms: 10, time_ms: 300, joints: {elbow: {deceleration: 573}, reach: "

@@ -110,6 +110,26 @@ TEST_F(RosReadersTest, StandBeforeAnyPublisherAndLoseNoMessageOfTheFirst) {
   EXPECT_EQ(positions(next()), (Positions{{"right_push", 0.1}}));
 }
 
+TEST_F(RosReadersTest, OfARobotThatStatesItsStopSayTheyAreStopping) {
+  const Cell stopping = test::two_stopping_arms();
+  PoseReader reader(stopping, daemon);
+  reader.start();
+  test::RosJoints joints(robot);
+  const dds_entity_t stated = robot.ros_writer(kRosBool, ros_dds_name("/left/stopping"));
+  ASSERT_TRUE(joints.is_heard() &&
+              test::eventually([&] { return test::matched_readers(stated) > 0; }));
+  Sample<std_msgs_msg_dds__Bool_> brakes;
+  brakes->data = true;
+  const auto is_stopping = [&] {
+    EXPECT_EQ(dds_write(stated, &*brakes), DDS_RETCODE_OK);
+    joints.send({"left_push", "left_shoulder"}, {0.1, 0.2});
+    const PoseBatch* const came = reader.next();
+    return came != nullptr && came->joints.size() == 2 && came->joints[0].stopping &&
+           came->joints[1].stopping;
+  };
+  EXPECT_TRUE(test::eventually(is_stopping));
+}
+
 TEST_F(RosReadersTest, ThatNobodySendsAreSaidToBeMissingWithWhatIsThere) {
   EXPECT_THAT(inputs.senders_of_joints(), HasSubstr("there is no publisher of"));
   EXPECT_THAT(inputs.senders_of_joints(), HasSubstr("domain " + std::to_string(*dds.domain)));

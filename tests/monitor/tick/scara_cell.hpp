@@ -48,6 +48,22 @@ inline Cell two_scara_arms() {
       folder / "cell.yaml");
 }
 
+// Two arms with joints on one topic of ROS 2, which state their stops on /left/stopping and
+// /right/stopping. Positions older than 20 ms are late.
+inline Cell two_stopping_arms() {
+  const ScratchFolder folder;
+  write_text(folder / "scara.urdf", kScaraUrdf);
+  const auto arm = [](const std::string& name, const std::string& rest) {
+    return "  - {name: " + name + ", urdf: scara.urdf, prefix: " + name +
+           "_, age_limit_ms: 20, stopping: {reaction_ms: 40, time_ms: 200, stated_on: /" + name +
+           "/stopping}" + rest + "}\n";
+  };
+  return read_good("name: test\nunits: {length: m, angle: rad}\nrobots:\n" + arm("left", "") +
+                       arm("right", ", base: {pose: {xyz: [9, 0, 0]}}") +
+                       "pairs: [{between: [left, right]}]\n",
+                   folder / "cell.yaml");
+}
+
 // `base` contains further keys of the robot.
 inline Scene scara_cell(const std::string& base = "") {
   const ScratchFolder folder;
