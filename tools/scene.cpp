@@ -59,11 +59,6 @@ CommandLine import_line(ImportArguments& arguments) {
        number_from_zero()},
       {"--age-limit-ms", &robot.age_limit_ms, "Maximum age of a pose, ms", positive_number(),
        shown()},
-      {"--mesh-tolerance", &robot.mesh_tolerance,
-       "Aim for the error of a mesh's convex parts, m; default 0.005", positive_number()},
-      {"--max-parts", &robot.max_parts,
-       "Largest number of parts per mesh; default 24; 1: one hull per mesh",
-       whole_number_in(1, 64)},
       force_option(arguments.force),
   });
   return line;

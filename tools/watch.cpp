@@ -27,16 +27,18 @@ Exit status:
   0  stopped by SIGINT, SIGTERM, SIGHUP, q or --seconds
   1  something else failed
   2  wrong usage
+  3  the cell file is wrong
   4  DDS could not be joined
   5  no report was received
 
-Example:
-  clearance-watch --partition lab --seconds 10)";
+Examples:
+  clearance-watch --partition lab --seconds 10
+  clearance-watch --cell cell.yaml)";
 
 struct Arguments {
   double seconds = 0.0;
   bool plain = false;
-  Topics topics;
+  std::filesystem::path cell;
   DdsArguments dds;
 };
 
@@ -47,10 +49,8 @@ void add_options(CommandLine& line, Arguments& arguments) {
       {"--plain", &arguments.plain,
        "Print one line per second instead of a full screen; the default without a terminal"},
   });
-  for (const TopicKind kind : {TopicKind::kDistances, TopicKind::kCatalogue, TopicKind::kHealth,
-                               TopicKind::kZones, TopicKind::kSeparation})
-    line.add({topic_option(kind, arguments.topics)});
-  arguments.dds.add_to(line, false);
+  line.add({topics_option(arguments.cell)});
+  arguments.dds.add_to(line);
 }
 
 // Shows the feed ten times a second on a screen, or once per second in plain lines.
@@ -98,8 +98,10 @@ class Display {
 };
 
 int run_watch(const Arguments& arguments, StopSignal& signal) {
+  const auto cell = cell_of_topics(arguments.cell);
+  if (!cell) return kBadCell;
   route_dds_log();
-  client::Connection connection(arguments.dds.resolve(), arguments.topics);
+  client::Connection connection(arguments.dds.resolve(*cell), cell->topics);
   watch::Feed feed(connection);
   Display display(arguments.plain, connection.where());
   SystemClock clock;

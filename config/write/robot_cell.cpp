@@ -173,10 +173,6 @@ void RobotCellWriter::emit_head() {
     out_ << YAML::Key << "max_speed" << YAML::Value << shortest(options_.max_speed);
   }
   out_ << YAML::Key << "age_limit_ms" << YAML::Value << shortest(options_.age_limit_ms);
-  if (options_.mesh_tolerance) {
-    out_ << YAML::Key << "tolerance" << YAML::Value << shortest(*options_.mesh_tolerance);
-  }
-  if (options_.max_parts) out_ << YAML::Key << "max_parts" << YAML::Value << *options_.max_parts;
   out_ << YAML::EndMap;
 }
 

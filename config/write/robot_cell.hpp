@@ -21,9 +21,6 @@ struct RobotCellOptions {
   std::vector<std::pair<std::string, std::filesystem::path>> packages;
   double max_speed = 0.0;  // m/s; 0: not stated
   double age_limit_ms = 20.0;
-  // The cell's keys `tolerance`, m, and `max_parts`, which limit the parts of meshes.
-  std::optional<double> mesh_tolerance;
-  std::optional<unsigned> max_parts;
 };
 
 // The text of the cell, and notes for the person who asked for it: omissions and their reasons.

@@ -49,10 +49,6 @@ void RecordingArguments::add_to(CommandLine& line, const std::string& prefix) {
        number_from_zero(), with_default()},
       {prefix + "roll-s", &roll_s, "The same when a file spans this time, s; 0: never",
        number_from_zero(), with_default()},
-      {prefix + "attach-mb", &attach_mb,
-       "Keep the files that the cell names (meshes, URDF, SRDF) if their compressed size is at "
-       "most this, MB; 0: never. With them a replay needs no cell",
-       number_from_zero(), with_default()},
       {prefix + "uncompressed", &uncompressed, "Do not compress (zstd)", {.group = "Recording"}},
   });
 }
@@ -91,7 +87,6 @@ RecordingOptions RecordingArguments::options(bool overwrite) const {
   RecordingOptions options{
       .overwrite = overwrite,
       .compress = !uncompressed,
-      .attach_bytes = static_cast<std::uint64_t>(std::ceil(std::min(attach_mb * 1e6, kMost))),
       .left_out = {},
       .pairs_every = pairs_every,
       .roll_bytes = static_cast<std::uint64_t>(std::ceil(std::min(roll_mb * 1e6, kMost))),

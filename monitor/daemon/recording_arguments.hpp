@@ -15,7 +15,7 @@ struct RecordingArguments {
   bool uncompressed = false;
   std::vector<std::string> without;  // keys of the cell's `topics`
   std::uint64_t pairs_every = 1;
-  double roll_mb = 0.0, roll_s = 0.0, attach_mb = 64.0;
+  double roll_mb = 0.0, roll_s = 0.0;
 
   // `prefix` begins the names of the options: "--record-" or "--".
   void add_to(CommandLine& line, const std::string& prefix);

@@ -28,9 +28,13 @@ void DdsArguments::add_to(CommandLine& line, bool has_cell) {
   });
 }
 
-Option topic_option(TopicKind kind, Topics& topics) {
-  const Topic& each = topic(kind);
-  return {fmt::format("--{}", each.key), &(topics.*each.name), "Topic name", shown()};
+Option topics_option(std::filesystem::path& cell) {
+  return {"--cell", &cell, "A cell file, which names domain, partition, interface and topics"};
+}
+
+std::optional<Cell> cell_of_topics(const std::filesystem::path& cell) {
+  if (cell.empty()) return Cell{};
+  return cell_or_errors(read_cell(cell, told_on_stderr()));
 }
 
 }  // namespace clearance

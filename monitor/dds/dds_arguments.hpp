@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <exception>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
@@ -37,8 +38,11 @@ struct DdsArguments {
   [[nodiscard]] DdsOptions resolve() const { return resolve(Cell{}); }
 };
 
-// "--distances" and its like: the name of a topic, by its key.
-[[nodiscard]] Option topic_option(TopicKind kind, Topics& topics);
+// "--cell" of a program that needs no more of a cell than its network and its topics.
+[[nodiscard]] Option topics_option(std::filesystem::path& cell);
+// The cell of that option; without one, the default cell. Nothing, after errors on stderr, if the
+// cell cannot be read.
+[[nodiscard]] std::optional<Cell> cell_of_topics(const std::filesystem::path& cell);
 
 // The exit code of a DDS program that ended with this exception.
 [[nodiscard]] inline ExitCode dds_exit_code(const std::exception& error) {

@@ -221,7 +221,7 @@ TEST_F(DaemonCommands,
   write_text(margin, "- set_margin: {object: floor, margin: 0.01}\n");
   write_text(back, "- set_margin: {object: floor}\n");
   const std::vector<std::string> send =
-      with({"send", margin, "--as", "planner"}, dds_arguments(dds));
+      with({"send", margin, "--as", "planner", "--cell", cell.path()}, dds_arguments(dds));
   ChildProcess former(kScene, with(send, {"--back", back, "--repeat", "1000000"}));
   std::set<std::uint64_t> revisions;
   ASSERT_TRUE(eventually([&] {

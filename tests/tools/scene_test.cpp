@@ -59,18 +59,6 @@ std::string chain_urdf() {
          "</robot>\n";
 }
 
-TEST_F(SceneProgram, WritesTheLimitsOfMeshesIntoTheCell) {
-  std::ofstream(directory_ / "chain.urdf") << chain_urdf();
-  EXPECT_EQ(run({"import", file("chain.urdf"), "-o", file("cell.yaml"), "--mesh-tolerance", "0.002",
-                 "--max-parts", "7"}),
-            0)
-      << output_;
-  std::ifstream written(file("cell.yaml"));
-  const std::string text((std::istreambuf_iterator<char>(written)), {});
-  EXPECT_NE(text.find("tolerance: 0.002"), std::string::npos) << text;
-  EXPECT_NE(text.find("max_parts: 7"), std::string::npos) << text;
-}
-
 TEST_F(SceneProgram, SaysWhichNeighboursItLeavesOutWithoutAnSrdf) {
   std::ofstream(directory_ / "chain.urdf") << chain_urdf();
   EXPECT_EQ(run({"import", file("chain.urdf"), "-o", file("cell.yaml")}), 0) << output_;

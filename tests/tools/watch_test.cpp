@@ -15,9 +15,9 @@ TEST(Watch, ShowsADaemonThatComesLaterAndSumsUpAtTheEnd) {
   std::string text = small_cell("small");
   const std::string zone = "enter_below: 0.3, leave_above: 0.35";
   text.replace(text.find(zone), zone.size(), "enter_below: 3, leave_above: 3.5");
-  const CellFile cell(text);
+  const CellFile cell(text + "dds: {topics: {distances: plant/distances, zones: plant/zones}}\n");
   const auto dds = dds_arguments(own_dds());
-  ChildProcess watch(kWatch, with({"--plain"}, dds));
+  ChildProcess watch(kWatch, with({"--plain", "--cell", cell.path()}, dds));
   ASSERT_TRUE(eventually([&] { return watch.wrote("waiting for clearanced"); })) << watch.output();
   ChildProcess daemon(kDaemon, with({cell.path()}, dds));
   ChildProcess robot(kRobot, with({cell.path(), "--rate", "200"}, dds));

@@ -316,14 +316,10 @@ int publish_recording(const PublishArguments& arguments, StopSignal& stop) {
     print(stderr, "clearance-replay: {}\n", found.error);
     return kFailed;
   }
-  DdsOptions dds = arguments.dds.resolve();
-  if (!arguments.cell.empty()) {
-    const auto cell = cell_or_errors(read_cell(arguments.cell, told_on_stderr()));
-    if (!cell) return kBadCell;
-    dds = arguments.dds.resolve(*cell);
-  }
+  const auto cell = cell_of_topics(arguments.cell);
+  if (!cell) return kBadCell;
   use_precise_timers();
-  return Publishing(arguments, dds, found.first_ns, stop).run();
+  return Publishing(arguments, arguments.dds.resolve(*cell), found.first_ns, stop).run();
 }
 
 }  // namespace clearance

@@ -22,7 +22,6 @@
 #include "monitor/client/client.hpp"
 #include "monitor/client/commands.hpp"
 #include "monitor/dds/dds_log.hpp"
-#include "monitor/wire/topics.hpp"
 
 namespace clearance {
 namespace {
@@ -149,8 +148,8 @@ class Latencies {
   std::array<std::vector<double>, 2> in_force_, answered_;  // ms
 };
 
-int no_result(const SendArguments& arguments, const client::Connection& connection,
-              const client::Commands& commands) {
+int no_result(const SendArguments& arguments, const Topics& topics,
+              const client::Connection& connection, const client::Commands& commands) {
   if (commands.is_heard()) {
     print(stderr, "clearance-scene: no result came within {} s; the changes may be made or not\n",
           arguments.timeout_s);
@@ -158,7 +157,7 @@ int no_result(const SendArguments& arguments, const client::Connection& connecti
     print(stderr,
           "clearance-scene: no daemon takes commands on {} ({}); a cell allows them with "
           "'commands: {{from: [{}]}}', and clearanced with --commands {}\n",
-          connection.where(), arguments.topics.commands, arguments.client, arguments.client);
+          connection.where(), topics.commands, arguments.client, arguments.client);
   }
   return kDdsFailed;
 }
@@ -185,10 +184,8 @@ CommandLine send_line(SendArguments& arguments) {
        "holds them",
        whole_number(1, 10'000'000), needing("--back")},
   });
-  for (const TopicKind kind :
-       {TopicKind::kCommands, TopicKind::kCommandResults, TopicKind::kDistances})
-    line.add({topic_option(kind, arguments.topics)});
-  arguments.dds.add_to(line, false);
+  line.add({topics_option(arguments.cell)});
+  arguments.dds.add_to(line);
   return line;
 }
 
@@ -216,12 +213,14 @@ int send_changes(const SendArguments& arguments) {
 
   const auto timeout = std::chrono::duration_cast<std::chrono::nanoseconds>(
       std::chrono::duration<double>(arguments.timeout_s));
-  client::Connection connection(arguments.dds.resolve(), arguments.topics);
+  const auto cell = cell_of_topics(arguments.cell);
+  if (!cell) return kBadCell;
+  client::Connection connection(arguments.dds.resolve(*cell), cell->topics);
   client::Commands commands(connection, arguments.client);
   if (arguments.repeats == 0) {
     const auto result = commands.send(changes, options, timeout);
     return result ? print_result(*result, arguments.dry_run)
-                  : no_result(arguments, connection, commands);
+                  : no_result(arguments, cell->topics, connection, commands);
   }
   std::vector<CellChange> back;
   const auto text = text_of(arguments.back);
@@ -233,7 +232,7 @@ int send_changes(const SendArguments& arguments) {
     std::this_thread::sleep_for(kLongestWait *
                                 std::fmod(static_cast<double>(i) * kGoldenRatio, 1.0));
     const auto result = latencies.send(i % 2 == 0 ? changes : back, options, i % 2);
-    if (!result) return no_result(arguments, connection, commands);
+    if (!result) return no_result(arguments, cell->topics, connection, commands);
     if (!result->done()) return print_result(*result, false);
   }
   latencies.print_table();

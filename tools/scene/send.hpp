@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "config/cell/topics.hpp"
 #include "monitor/dds/dds_arguments.hpp"
 
 namespace clearance {
@@ -18,11 +17,11 @@ struct SendArguments {
   std::string client = "clearance-scene";
   std::vector<std::filesystem::path> files;  // that changes name as "sent:NAME"
   bool dry_run = false;
-  double timeout_s = 10.0;    // for each result
-  std::string back;           // a file with changes that take CHANGES back
-  std::uint64_t repeats = 0;  // 0: once, and no latency
+  double timeout_s = 10.0;     // for each result
+  std::string back;            // a file with changes that take CHANGES back
+  std::uint64_t repeats = 0;   // 0: once, and no latency
+  std::filesystem::path cell;  // that names the topics; empty: none
   DdsArguments dds;
-  Topics topics;
 };
 
 [[nodiscard]] CommandLine send_line(SendArguments& arguments);

@@ -119,13 +119,6 @@ TEST_F(RobotCellFile, WhatIsLeftOutIsSaid) {
           "2 disabled pairs left out: 1 named twice, 1 with a link without collision shapes"));
 }
 
-TEST_F(RobotCellFile, LimitsOfMeshesAreWritten) {
-  EXPECT_THAT(cell().yaml, Not(HasSubstr("tolerance")));
-  options_.mesh_tolerance = 0.002;
-  options_.max_parts = 7;
-  EXPECT_THAT(cell().yaml, HasSubstr("  tolerance: 0.002\n  max_parts: 7\n"));
-}
-
 TEST_F(RobotCellFile, ACylinderIsACylinder) {
   const CurvedShape cylinder = scene().objects.at(1).parts.at(0).shape.curved;
   EXPECT_EQ(cylinder.kind, CurvedShape::Kind::kTruncatedCone);
