@@ -58,8 +58,10 @@ inline constexpr LogLine<Text, Text, Text> kMoveItRefused{
 inline constexpr LogLine<Text, Count, Count> kTooManyBodies{
     "too-many-bodies", kError,
     "{} has {} bodies and the cell {} persons: the last person is unknown and stands for the rest"};
-inline constexpr LogLine<Text> kBodiesSilent{"bodies-silent", kError,
-                                             "{} is silent: whether people are there is unknown"};
+inline constexpr LogLine<Text> kBodiesSilent{
+    "bodies-silent", kError,
+    "a publisher of {} is silent: whether people are there "
+    "is unknown"};
 inline constexpr LogLine<Text, Count> kSceneResumed{
     "scene-resumed", kInfo, "the scene of {} is resumed: its changes began with revision {:016x}"};
 inline constexpr LogLine<Text, Text, Text> kWaitingForDescription{

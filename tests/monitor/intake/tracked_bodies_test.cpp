@@ -86,13 +86,15 @@ TEST_F(TrackedPersons, AreUnknownWhileNothingSaysWhichAreThere) {
 
 class TrackedBodiesOfIntake : public testing::Test {
  protected:
-  bool send(const std::vector<std::string>& ids, const std::string& type = "hri_msgs/msg/IdsList") {
+  bool send(const std::vector<std::string>& ids, std::uint64_t writer = 1,
+            const std::string& type = "hri_msgs/msg/IdsList") {
     test::RosCdr cdr;
     for (const std::int32_t stamp : {7, 8}) cdr.number(stamp);
     cdr.text("camera");
     cdr.number(static_cast<std::uint32_t>(ids.size()));
     for (const std::string& id : ids) cdr.text(id);
-    return heard_.take({"/humans/bodies/tracked", type, heard_.now.realtime_ns, cdr.bytes()});
+    return heard_.take({"/humans/bodies/tracked", type, heard_.now.realtime_ns, cdr.bytes()},
+                       writer);
   }
   // What the last message says.
   std::vector<CellChange> said() {
@@ -107,7 +109,7 @@ class TrackedBodiesOfIntake : public testing::Test {
 
 TEST_F(TrackedBodiesOfIntake, AreHandedOnWhenTheListChanges) {
   EXPECT_TRUE(heard_.intake.hears_ros());
-  EXPECT_FALSE(send({}, "std_msgs/msg/String"));
+  EXPECT_FALSE(send({}, 1, "std_msgs/msg/String"));
   for (int i = 0; i < 5; ++i) EXPECT_TRUE(send({"b1"}));
   ASSERT_EQ(came_.size(), 1u);
   const std::vector<CellChange> changes = said();
@@ -154,6 +156,56 @@ TEST_F(TrackedBodiesOfIntake, AreUnknownAfterASecondWithoutAList) {
   heard_.settle();
   EXPECT_EQ(came_.size(), 4u);
   EXPECT_EQ(heard_.told(lines::kBodiesSilent.code), 2u);
+}
+
+// Two trackers that see different parts of the cell: a person whom one of them sees is there.
+TEST_F(TrackedBodiesOfIntake, OfSeveralTrackersAreAllOfThem) {
+  const auto seen = [this] {
+    std::vector<std::string> ids;
+    for (const CellChange& change : said()) {
+      if (!std::get<SetAbsent>(change).absent) ids.push_back(*std::get<SetAbsent>(change).id);
+    }
+    return ids;
+  };
+  EXPECT_TRUE(send({"b1"}, 1));
+  EXPECT_TRUE(send({}, 2));
+  EXPECT_THAT(seen(), ElementsAre("b1"));
+  EXPECT_TRUE(send({"b2", "b1"}, 2));
+  EXPECT_THAT(seen(), ElementsAre("b1", "b2"));
+  EXPECT_TRUE(send({}, 1));
+  EXPECT_THAT(seen(), ElementsAre("b2", "b1"));
+  EXPECT_TRUE(send({"b1"}, 2));
+  EXPECT_THAT(seen(), ElementsAre("b1"));
+  EXPECT_EQ(heard_.told(lines::kTooManyBodies.code), 0u);
+}
+
+// The one that goes on cannot say whom the other one saw.
+TEST_F(TrackedBodiesOfIntake, AreUnknownUntilATrackerThatFellSilentHasASuccessor) {
+  const auto pass = [this](std::initializer_list<std::uint64_t> senders) {
+    for (int i = 0; i < 4; ++i) {
+      heard_.pass(TrackedBodies::kSilentNs / 4);
+      for (const std::uint64_t sender : senders) EXPECT_TRUE(send({}, sender));
+      heard_.settle();
+    }
+  };
+  const auto is_unknown = [this] { return came_.back().cdr.empty(); };
+  pass({1, 2});
+  EXPECT_FALSE(is_unknown());
+  pass({1});
+  EXPECT_TRUE(is_unknown());
+  heard_.intake.keep({1});
+  pass({1});
+  EXPECT_TRUE(is_unknown()) << "it may have died, whatever DDS says";
+  pass({1, 3});
+  EXPECT_FALSE(is_unknown()) << "it has been started again";
+  pass({1});
+  EXPECT_TRUE(is_unknown());
+  pass({1, 3});
+  EXPECT_FALSE(is_unknown()) << "it was only held up";
+  pass({1, 4});
+  EXPECT_FALSE(is_unknown()) << "it was started again at once";
+  pass({4});
+  EXPECT_TRUE(is_unknown()) << "it stands in for one only";
 }
 
 TEST_F(TrackedBodiesOfIntake, ThatAreCutOffAreRefused) {
