@@ -197,7 +197,7 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   cell.scene.sensors = sensors.sensors;
   cell.scene.robots = std::move(robots.robots);
   cell.scene.variables = std::move(robots.variables);
-  find_followed_robot(timing_, diagnostics_, cell.scene);
+  find_followed(timing_, diagnostics_, cell.scene);
   crop_sensors(sensors, diagnostics_, cell.scene);
 }
 

@@ -18,7 +18,7 @@ constexpr Range kRates{.least = 1.0, .most = 10'000.0};  // Hz
 // The range is from one tick at 1 kHz to some days.
 constexpr Range kRefreshes{.least = 1e-3, .most = 1e6};  // s
 
-// {on: ROBOT}
+// {on: NAME}
 const YamlNode* read_tick(const YamlNode& node, Diagnostics& diagnostics) {
   MapReader map(node, "the tick", diagnostics);
   const YamlNode* const on = map.required("on");
@@ -61,7 +61,7 @@ TimingPlaces read_timing(MapReader& map, const Quantities& quantities, Scene& sc
   return places;
 }
 
-void find_followed_robot(const TimingPlaces& places, Diagnostics& diagnostics, Scene& scene) {
+void find_followed(const TimingPlaces& places, Diagnostics& diagnostics, Scene& scene) {
   if (places.followed == nullptr) return;
   const std::string& name = places.followed->text;
   std::vector<std::string> names;
@@ -70,9 +70,16 @@ void find_followed_robot(const TimingPlaces& places, Diagnostics& diagnostics, S
     names.push_back(scene.robots[i].name);
     if (names.back() == name) scene.tick_on = i;
   }
-  if (scene.tick_on != Scene::kFreeRunning) return;
+  for (std::uint32_t i = 0; i < scene.objects.size() && scene.is_free_running(); ++i) {
+    const Object& object = scene.objects[i];
+    if (object.fixed || object.is_seen() || object.pose_error > 0.0) continue;
+    names.push_back(object.name);
+    if (names.back() == name) scene.tick_on_object = i;
+  }
+  if (!scene.is_free_running()) return;
   diagnostics.add(*places.followed,
-                  fmt::format("found {}; expected a robot, whose joint states ticks follow{}",
+                  fmt::format("found {}; expected a robot or an object, whose joint states or "
+                              "poses ticks follow{}",
                               describe(*places.followed), did_you_mean(name, names)));
 }
 

@@ -103,13 +103,16 @@ struct Scene {
   std::uint64_t revision = 0;  // FNV-1a of the cell file's bytes (and of referenced meshes): two
                                // scenes that differ have different revisions; never 0
   double rate_hz = 1000.0;
-  // Index into `robots`: ticks follow the joint states of this one. kFreeRunning: they follow none.
+  // Ticks follow the joint states of this robot, or the poses of this object: indices.
   static constexpr std::uint32_t kFreeRunning = std::numeric_limits<std::uint32_t>::max();
-  std::uint32_t tick_on = kFreeRunning;
-  // The time between two ticks, s: those that follow a robot may be faster or slower by a 64th.
+  std::uint32_t tick_on = kFreeRunning, tick_on_object = kFreeRunning;
+  [[nodiscard]] bool is_free_running() const noexcept {
+    return tick_on == kFreeRunning && tick_on_object == kFreeRunning;
+  }
+  // The time between two ticks, s: those that follow a source may be faster or slower by a 64th.
   [[nodiscard]] double shortest_period() const noexcept { return (1.0 - slew()) / rate_hz; }
   [[nodiscard]] double longest_period() const noexcept { return (1.0 + slew()) / rate_hz; }
-  [[nodiscard]] double slew() const noexcept { return tick_on == kFreeRunning ? 0.0 : 1.0 / 64; }
+  [[nodiscard]] double slew() const noexcept { return is_free_running() ? 0.0 : 1.0 / 64; }
   std::uint32_t budget = 2000;  // distance queries a tick, at most: part pairs
   double refresh_s = 10.0;      // every pair is refreshed this often, even if nothing moves, and
                                 // whatever else is urgent: the budget covers it (RefreshShare)

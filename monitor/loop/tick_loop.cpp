@@ -292,11 +292,17 @@ void TickLoop::note_source(const PoseBatch& batch) noexcept {
 // Of the robot that ticks follow: its joints, and not its base on tf, which has another clock.
 void TickLoop::note_phase(const PoseBatch& batch) noexcept {
   const Scene& scene = state_.scene();
-  if (scene.tick_on == Scene::kFreeRunning || batch.came_ns == 0 || batch.joints.empty()) return;
-  const std::uint32_t variable = batch.joints.front().variable;
-  if (!made_for(batch, scene.revision) || variable >= scene.variables.size()) return;
-  if (scene.variables[variable].robot != scene.tick_on) return;
-  if (!scene.robots[scene.tick_on].is_of_base(variable)) phase_.note(batch.came_ns);
+  if (scene.is_free_running() || batch.came_ns == 0 || !made_for(batch, scene.revision)) return;
+  const auto is_followed = [&scene](std::uint32_t variable) {
+    return variable < scene.variables.size() && scene.variables[variable].robot == scene.tick_on &&
+           !scene.robots[scene.tick_on].is_of_base(variable);
+  };
+  const auto is_of_object = [&scene](const PoseSample& sample) {
+    return sample.object < scene.objects.size() && sample.object == scene.tick_on_object;
+  };
+  if ((!batch.joints.empty() && is_followed(batch.joints.front().variable)) ||
+      std::ranges::any_of(batch.samples, is_of_object))
+    phase_.note(batch.came_ns);
 }
 
 // The smallest distance of the run, for the summary at its end.

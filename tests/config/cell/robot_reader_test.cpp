@@ -267,8 +267,18 @@ TEST_F(Robots, MayBeFollowedByTheTicks) {
   const Scene cell = scene(kWalker, kSelf + "tick: {on: walker}\nrate_hz: 500\n");
   EXPECT_EQ(cell.tick_on, 0u);
   EXPECT_EQ(cell.longest_period(), 0.002 * (1 + 1.0 / 64));
+  const std::string objects =
+      "objects:\n  - {name: cart, sphere: {radius: 1}}\n"
+      "  - {name: rock, fixed: true, sphere: {radius: 1}}\n"
+      "pairs: [{between: [walker, walker]}, {between: [cart, rock]}]\n";
+  const Scene beside = scene(kWalker, objects + "tick: {on: cart}\n");
+  EXPECT_EQ(beside.tick_on, Scene::kFreeRunning);
+  EXPECT_EQ(beside.objects.at(beside.tick_on_object).name, "cart");
+  EXPECT_THAT(errors(kWalker, objects + "tick: {on: rock}\n"), HasSubstr("poses ticks follow"));
+  EXPECT_THAT(errors(kWalker, objects + "tick: {on: left}\n"), HasSubstr("poses ticks follow"))
+      << "joints move a link";
   EXPECT_THAT(errors(kWalker, kSelf + "tick: {on: wolker}\n"),
-              mistake_at("cell.yaml:6", "'wolker'", "expected a robot", "'walker'"));
+              mistake_at("cell.yaml:6", "'wolker'", "expected a robot or an object", "'walker'"));
   EXPECT_THAT(errors(kWalker, kSelf + "tick: {at: walker}\n"), HasSubstr("'on'"));
 }
 

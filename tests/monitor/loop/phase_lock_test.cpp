@@ -1,4 +1,4 @@
-// Ticks that follow a robot: samples come shortly before their tick, whatever clock their source
+// Ticks that follow a source: samples come shortly before their tick, whatever clock their source
 // has.
 //
 // Oracle: a source in time, and the loop on a clock that the test turns.
@@ -6,11 +6,13 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <vector>
 
 #include "monitor/loop/tick_loop.hpp"
 #include "tests/monitor/loop/listed_ports.hpp"
 #include "tests/monitor/tick/scara_cell.hpp"
+#include "tests/monitor/tick/small_cells.hpp"
 #include "tests/shared/random.hpp"
 
 namespace clearance {
@@ -18,13 +20,20 @@ namespace {
 
 constexpr std::int64_t kMicrosecond = 1'000, kTickPeriod = 1'000 * kMicrosecond;
 
-// Sends the joints of the robot at these times, and notes how long each batch waits for its tick.
-class FollowedRobot final : public PoseSource {
+// Sends the joints of the robot, or the pose of an object, at these times, and notes how long each
+// batch waits for its tick.
+class FollowedSource final : public PoseSource {
  public:
-  FollowedRobot(test::TurnedClock& clock, std::vector<std::int64_t> came)
+  FollowedSource(test::TurnedClock& clock, std::vector<std::int64_t> came, const Scene& scene,
+                 std::optional<std::uint32_t> object)
       : clock_(clock), came_(std::move(came)) {
     batch_.source = SourceName("driver");
-    batch_.joints = {test::joint(0, 0.1, test::kStart)};
+    if (object) {
+      batch_.scene_revision = scene.revision;
+      batch_.samples = {test::sample(*object, Pose{}, test::kStart)};
+    } else {
+      batch_.joints = {test::joint(0, 0.1, test::kStart)};
+    }
   }
   const PoseBatch* next() noexcept override {
     const std::int64_t now = clock_.monotonic_ns();
@@ -48,11 +57,12 @@ struct Followed {
 };
 
 Followed followed(const std::vector<std::int64_t>& came, std::uint64_t ticks,
-                  std::uint32_t robot = 0) {
+                  std::uint32_t robot = 0, std::optional<std::uint32_t> object = {}) {
   Scene scene = test::scara_cell();
   scene.tick_on = robot;
+  if (object) scene.tick_on_object = *object;
   test::TurnedClock clock;
-  FollowedRobot source(clock, came);
+  FollowedSource source(clock, came, scene, object);
   test::ListedReports reports(clock);
   TickLoop loop(scene, source, {&reports}, clock, {.max_ticks = ticks});
   const std::atomic<bool> stop = false;
@@ -96,6 +106,17 @@ TEST(PhaseLock, SamplesComeShortlyBeforeTheirTickFromAnyPhaseAndWithAnotherClock
       expect_no_jump(run.ticks);
     }
   }
+}
+
+TEST(PhaseLock, FollowsThePosesOfAnObjectAsWell) {
+  const Scene scene = test::scara_cell();
+  const auto cart = std::ranges::find(scene.objects, "cart", &Object::name);
+  ASSERT_NE(cart, scene.objects.end());
+  const auto object = static_cast<std::uint32_t>(cart - scene.objects.begin());
+  const std::vector<std::int64_t> came = sent_each(1e6, 350 * kMicrosecond, 0, 3'000);
+  const Followed run = followed(came, 3'000, Scene::kFreeRunning, object);
+  EXPECT_LT(quantile(after(run.waits, 500), 0.99), 60 * kMicrosecond);
+  expect_no_jump(run.ticks);
 }
 
 TEST(PhaseLock, LeadsByTheJitterOfTheSourceSoThatFewSamplesWaitForAPeriod) {
