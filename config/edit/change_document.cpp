@@ -99,6 +99,7 @@ class ChangeMaker {
   }
   template <class Change>
   Fault edit_robot(const Change& change, const std::optional<Pose>& stated);
+  Fault add_object(YamlNode node);
   Fault set_value(const std::string& name, const std::string& key, std::optional<YamlNode> value,
                   std::string_view list = "objects");
   Fault set_length(const std::string& object, const std::string& key,
@@ -152,11 +153,24 @@ Fault ChangeMaker::set_length(const std::string& object, const std::string& key,
   return set_value(object, key, value ? std::optional(length(*value)) : std::nullopt);
 }
 
+// A later change of the list could not say which of two objects it names.
+Fault ChangeMaker::add_object(YamlNode node) {
+  const std::string name = name_of(node);
+  if (std::ranges::find(document_.items("objects"), name, name_of) !=
+      document_.items("objects").end()) {
+    return ChangeFault{fmt::format("objects[{}]", name),
+                       fmt::format("found '{}', which the cell has; expected another name, or "
+                                   "replace_object",
+                                   name)};
+  }
+  document_.append("objects", std::move(node));
+  return std::nullopt;
+}
+
 Fault ChangeMaker::operator()(const AddObject& change) {
   auto read = object_entry(change.yaml);
   if (auto* fault = std::get_if<ChangeFault>(&read)) return std::move(*fault);
-  document_.append("objects", std::get<YamlNode>(std::move(read)));
-  return std::nullopt;
+  return add_object(std::get<YamlNode>(std::move(read)));
 }
 
 Fault ChangeMaker::operator()(const ReplaceObject& change) {
@@ -176,8 +190,7 @@ Fault ChangeMaker::operator()(const AddFromTemplate& change) {
   if (!change.groups.empty()) set(node, "groups", texts_node(change.groups));
   set(node, "fixed", flag_node(true));
   set(node, "pose", pose(change.world_from_object));
-  document_.append("objects", std::move(node));
-  return std::nullopt;
+  return add_object(std::move(node));
 }
 
 Fault ChangeMaker::operator()(const RemoveObject& change) {

@@ -3,6 +3,7 @@
 // Oracle: the ordinary reader, which reads each changed text as a file of its own.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <string>
 #include <variant>
@@ -10,6 +11,7 @@
 
 #include "tests/config/edit/drawn_change.hpp"
 #include "tests/config/edit/edited_cell.hpp"
+#include "tests/shared/every_choice.hpp"
 
 namespace clearance {
 namespace {
@@ -85,6 +87,60 @@ TEST_F(CellEdits, RandomListsGiveTheCellOfTheirText) {
     EXPECT_EQ(accepted[kind] == 0, is_file) << kind;
     EXPECT_GT(rejected[kind], 0) << kind;
   }
+}
+
+// Of an object that comes, changes and goes: in one list or step by step, the same cell.
+TEST_F(CellEdits, AllListsOfThreeGiveTheCellOfTheirSteps) {
+  using enum SetPair::Rule;
+  const std::string sphere = ", sphere: {radius: 60}}";
+  const std::vector<CellChange> changes = {
+      AddObject{"{name: p0, groups: [things]" + sphere},
+      ReplaceObject{"{name: p0, groups: [things], fixed: true, pose: {xyz: [0, 0, 500]}" + sphere},
+      RemoveObject{"p0"},
+      Attach{.object = "p0", .to = "hand", .carrier_from_object = Pose{}, .far = true},
+      Detach{"p0", Pose{Vec3(0, 0, 0.7), Eigen::Quaterniond::Identity()}},
+      Place{"p0", Pose{Vec3(0, 0, 0.9), Eigen::Quaterniond::Identity()}},
+      SetAbsent{"p0"},
+      SetMaxSpeed{"p0", 1.0},
+      SetPair{"p0", "cart", kPublish},
+      SetPair{"p0", "cart", kLeaveOut, "they may touch"},
+      AllowContact{"c0", "p0", "table", 0.01, {.distance = 0.1}, "test", "test"},
+      WithdrawContact{"c0"}};
+  std::string text = kEditedCell;  // without the mesh, which every reading checks again
+  text.replace(text.find("mesh: {file: spare.obj}"), 23, "sphere: {radius: 60}");
+  const auto is_rule = [](const CellChange& change) {
+    return std::holds_alternative<SetPair>(change) || std::holds_alternative<AllowContact>(change);
+  };
+  const CellEditor begun = open(text);
+  test::EveryChoice choice;
+  int whole = 0;
+  while (choice.next()) {
+    std::vector<CellChange> list;
+    for (int i = 0; i < 3; ++i) list.push_back(changes[choice.of(changes.size())]);
+    CellEditor at_once = open(text), by_steps = open(text);
+    bool are_accepted = true;
+    for (const CellChange& change : list) {
+      const auto result = by_steps.edit({&change, 1});
+      are_accepted = are_accepted && std::holds_alternative<Cell>(result);
+      if (!are_accepted) break;
+    }
+    const auto result = at_once.edit(list);
+    if (const auto* refused = std::get_if<EditRefusal>(&result)) {
+      ASSERT_EQ(at_once.text(), begun.text()) << choice.runs();
+      // What a later change makes void is a mistake in one list.
+      ASSERT_TRUE(!are_accepted || refused->path.starts_with("pairs[") ||
+                  refused->path.starts_with("contacts["))
+          << choice.runs() << ": " << refused->path << ": " << refused->reason;
+      continue;
+    }
+    ++whole;
+    // A list may name an object before it adds it.
+    ASSERT_TRUE(are_accepted || std::ranges::any_of(list, is_rule)) << choice.runs();
+    if (!are_accepted) continue;
+    ASSERT_EQ(at_once.text(), by_steps.text()) << choice.runs();
+  }
+  EXPECT_EQ(choice.runs(), 1'728u);
+  EXPECT_GT(whole, 50);
 }
 
 }  // namespace

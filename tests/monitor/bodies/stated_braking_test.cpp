@@ -1,9 +1,13 @@
 // Joints whose sender says that they brake (JointStates.stopping), and whether that is believed.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cstdint>
+#include <vector>
 
 #include "monitor/bodies/tracked_variable.hpp"
+#include "tests/shared/every_choice.hpp"
 
 namespace clearance {
 namespace {
@@ -29,6 +33,12 @@ class StatedBraking : public testing::Test {
     return state_.is_stopping;
   }
 
+  void begin_anew() {
+    state_ = {};
+    now_ns_ = 0;
+    position_ = 0.0;
+  }
+
   static constexpr std::int64_t kStepNs = 1'000'000;
 
  private:
@@ -50,6 +60,24 @@ TEST_F(StatedBraking, EndsWhenTheJointBecomesFaster) {
   EXPECT_FALSE(is_stopping(true, 0.2));
   EXPECT_FALSE(is_stopping(false, 0.2));
   EXPECT_TRUE(is_stopping(true, 0.2)) << "this is another stop";
+}
+
+// Oracle: the rule, by the whole history.
+TEST_F(StatedBraking, OfAllSequencesOfSixIsBelievedWhileNoSpeedIsHalfAboveTheLeast) {
+  test::EveryChoice choice;
+  while (choice.next()) {
+    begin_anew();
+    std::vector<double> speeds;  // since the statement began
+    for (int step = 0; step < 6; ++step) {
+      const bool stated = choice.flag();
+      const double speed = std::array{0.0, 0.5, 0.74, 1.0}[choice.of(4)];
+      if (!stated) speeds.clear();
+      if (stated) speeds.push_back(speed);
+      const bool is_believed = stated && speed <= 1.5 * *std::ranges::min_element(speeds);
+      ASSERT_EQ(is_stopping(stated, speed), is_believed) << choice.runs() << ", step " << step;
+    }
+  }
+  EXPECT_EQ(choice.runs(), 262'144u);
 }
 
 TEST_F(StatedBraking, IsNotBelievedWhileTheVelocityIsNotKnown) {

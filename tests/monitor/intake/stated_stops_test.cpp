@@ -3,9 +3,11 @@
 
 #include <map>
 #include <string>
+#include <vector>
 
 #include "tests/monitor/intake/heard.hpp"
 #include "tests/monitor/tick/scara_cell.hpp"
+#include "tests/shared/every_choice.hpp"
 
 namespace clearance::test {
 namespace {
@@ -100,6 +102,51 @@ TEST_F(StatedStopsOfRos, CountOnlyIfAllPublishersOfTheTopicAgree) {
   state(true);
   heard.pass(6 * kMs);
   EXPECT_TRUE(left()) << "the other one is silent";
+}
+
+// Oracle: the rule, by the whole history. A statement holds for a stamp if each publisher that was
+// heard within 20 ms has said true since then, with no gap above 20 ms.
+TEST_F(StatedStopsOfRos, OfAllSequencesOfFiveHoldAsTheRuleSays) {
+  struct Said {
+    std::int64_t at_ns;
+    bool is_stopping;
+  };
+  EveryChoice choice;
+  while (choice.next()) {
+    Heard each(cell);
+    std::map<std::uint64_t, std::vector<Said>> history;
+    for (int step = 0; step < 5; ++step) {
+      const std::size_t what = choice.of(6);
+      if (what < 4) {
+        const std::uint64_t writer = what < 2 ? kPlc : kOtherPlc;
+        RosCdr cdr;
+        cdr.number(static_cast<std::uint8_t>(what % 2));
+        each.take({"/left/stopping", "std_msgs/msg/Bool", each.now.realtime_ns, cdr.bytes()},
+                  writer);
+        history[writer].push_back({each.now.realtime_ns, what % 2 == 1});
+      } else {
+        each.pass(what == 4 ? 10 * kMs : 20 * kMs + 1);
+      }
+    }
+    for (const std::int64_t age_ns : {0 * kMs, 10 * kMs, 25 * kMs}) {
+      const std::int64_t now = each.now.realtime_ns, stamp = now - age_ns;
+      bool is_any = false, do_all = true;
+      for (const auto& [writer, said] : history) {
+        if (now - said.back().at_ns > 20 * kMs) continue;
+        is_any = true;
+        std::int64_t since = said.back().at_ns;
+        for (auto before = said.rbegin(); before != said.rend() && before->is_stopping; ++before) {
+          if (since - before->at_ns > 20 * kMs) break;
+          since = before->at_ns;
+        }
+        do_all = do_all && said.back().is_stopping && since <= stamp;
+      }
+      each.take(joint_state(now, stamp, {{"left_shoulder"}, {0.1}, {0.5}}));
+      ASSERT_EQ(each.one().joints.at(0).stopping, is_any && do_all)
+          << choice.runs() << ", age " << age_ns;
+    }
+  }
+  EXPECT_EQ(choice.runs(), 7'776u);
 }
 
 TEST_F(StatedStopsOfRos, OfDamagedMessagesAreNotUsed) {
