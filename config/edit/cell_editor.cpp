@@ -9,6 +9,7 @@
 
 #include "config/edit/cell_document.hpp"
 #include "config/edit/change_document.hpp"
+#include "config/edit/touched_entry.hpp"
 #include "config/yaml/yaml_writer.hpp"
 
 namespace clearance {

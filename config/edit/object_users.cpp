@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <string_view>
 
-#include "config/edit/change_document.hpp"
+#include "config/edit/touched_entry.hpp"
 #include "config/yaml/yaml_writer.hpp"
 
 namespace clearance {
