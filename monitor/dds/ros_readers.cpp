@@ -14,6 +14,7 @@ RosReaders::~RosReaders() {
 }
 
 void RosReaders::stand() {
+  has_new_names_ = true;
   for (const NamedTopic& named : intake_.named()) {
     const std::string topic = ros_dds_name(named.name);
     const auto [place, is_new] = standing_.try_emplace({topic, named.delivery->descriptor}, 0);
@@ -32,7 +33,8 @@ dds_entity_t RosReaders::reader_of(const RosType& delivery, const std::string& t
 }
 
 bool RosReaders::poll() {
-  if (!present_.poll()) return false;
+  const bool has_new_names = std::exchange(has_new_names_, false);
+  if (!present_.poll() && !has_new_names) return false;
   for (const auto& [handle, writer] : present_.writers()) {
     const TopicName name = as_in_ros(writer.topic, writer.type);
     const auto wanted = intake_.topic(name);

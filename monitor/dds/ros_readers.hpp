@@ -36,7 +36,8 @@ class RosReaders {
   // Makes readers for the topics that the cell names. Messages wait in them until poll() knows the
   // writer.
   void stand();
-  // Makes readers for topics that have appeared. Returns true if writers have come or gone.
+  // Makes readers for topics that have appeared, and after stand() for all. Returns true if writers
+  // may have come or gone.
   bool poll();
   [[nodiscard]] const std::vector<Reader>& readers() const noexcept { return readers_; }
   // The topics that other programs publish, and the publication handles of all their writers.
@@ -54,6 +55,7 @@ class RosReaders {
   Intake& intake_;
   PresentTopics present_;
   std::vector<Reader> readers_;
+  bool has_new_names_ = false;  // the cell may name a topic that was there before
   // Readers of stand() that no writer needed yet, by topic and type; 0: it has one of readers_.
   std::map<std::pair<std::string, const dds_topic_descriptor_t*>, dds_entity_t> standing_;
 };

@@ -140,7 +140,7 @@ void RosJointStates::give(Writer& writer, std::uint64_t handle) {
 }
 
 // All joints of a batch are stopping, or none is: one message may have two robots that differ.
-bool RosJointStates::decode(std::uint32_t port, const RawMessage& message, const Now&,
+bool RosJointStates::decode(std::uint32_t port, const RawMessage& message, const Now& now,
                             TopicCounts& counts) {
   if (!decoder_.decode(message.cdr, states_, message.bytes)) return false;
   Topic& topic = topics_[port];
@@ -148,7 +148,7 @@ bool RosJointStates::decode(std::uint32_t port, const RawMessage& message, const
   note_unused(topic, writer);
   from_wire(*states_, topic.names, time_of(message, topic, writer, counts), batch_);
   for (JointSample& sample : batch_.joints)
-    sample.stopping = stops_.is_stopping(sample.variable, sample.stamp_ns, message.sent_ns);
+    sample.stopping = stops_.is_stopping(sample.variable, sample.stamp_ns, now);
   const auto moving = std::ranges::stable_partition(batch_.joints, &JointSample::stopping);
   std::vector<JointSample> others;
   if (moving.begin() != batch_.joints.begin()) {

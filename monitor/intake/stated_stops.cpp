@@ -54,28 +54,30 @@ std::int64_t StatedStops::age_limit_ns(const std::string& topic) const {
   return limit;
 }
 
-// After a gap, the brakes may have been released meanwhile: they act since the end of the gap.
-bool StatedStops::decode(std::uint32_t port, const RawMessage& message, const Now&, TopicCounts&) {
+// After a gap, the brakes may have been released meanwhile: they act since the end of the gap. The
+// clock of the writer may be ahead.
+bool StatedStops::decode(std::uint32_t port, const RawMessage& message, const Now& now,
+                         TopicCounts&) {
   if (!decoder_.decode(message.cdr, message_, message.bytes)) return false;
   Topic& topic = topics_[port];
   Statement& statement = topic.of_writers[message.writer];
-  const bool goes_on = statement.is_stopping && message.sent_ns >= statement.last_ns &&
-                       message.sent_ns - statement.last_ns <= age_limit_ns(topic.name);
-  if (!goes_on) statement.since_ns = message.sent_ns;
-  statement.last_ns = message.sent_ns;
+  const std::int64_t sent_ns = std::min(message.sent_ns, now.realtime_ns);
+  const bool goes_on = statement.is_stopping && sent_ns >= statement.last_ns &&
+                       sent_ns - statement.last_ns <= age_limit_ns(topic.name);
+  if (!goes_on) statement.since_ns = sent_ns;
+  statement.last_ns = sent_ns;
   statement.is_stopping = message_->data;
   return true;
 }
 
-bool StatedStops::is_stopping(std::uint32_t variable, std::int64_t stamp_ns,
-                              std::int64_t sent_ns) const {
+bool StatedStops::is_stopping(std::uint32_t variable, std::int64_t stamp_ns, const Now& now) const {
   const JointVariable& of = scene_->variables[variable];
   const auto topic =
       std::ranges::find(topics_, scene_->robots[of.robot].stopping.stated_on, &Topic::name);
   if (topic == topics_.end()) return false;
   bool is_stated = false;
   for (const auto& [writer, statement] : topic->of_writers) {
-    if (sent_ns - statement.last_ns > of.age_limit_ns) continue;
+    if (now.realtime_ns - statement.last_ns > of.age_limit_ns) continue;
     if (!statement.is_stopping || statement.since_ns > stamp_ns) return false;
     is_stated = true;
   }

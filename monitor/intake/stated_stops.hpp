@@ -26,15 +26,14 @@ class StatedStops final : public Decoder {
   void change(const Cell& cell) override { scene_ = &cell.scene; }
 
   // True if the brakes of the variable's robot act since `stamp_ns` or before, by a message that is
-  // no older than the age limit of the variable at `sent_ns`. Each writer that is heard says so.
-  // Both times are CLOCK_REALTIME of the robot.
+  // now no older than the age limit of the variable. Each writer that is heard says so.
   [[nodiscard]] bool is_stopping(std::uint32_t variable, std::int64_t stamp_ns,
-                                 std::int64_t sent_ns) const;
+                                 const Now& now) const;
 
  private:
   struct Statement {
     bool is_stopping = false;
-    std::int64_t since_ns = 0, last_ns = 0;  // times of sending
+    std::int64_t since_ns = 0, last_ns = 0;  // times of sending, no later than of arrival
   };
   struct Topic {
     std::string name;

@@ -130,6 +130,32 @@ TEST_F(RosReadersTest, OfARobotThatStatesItsStopSayTheyAreStopping) {
   EXPECT_TRUE(test::eventually(is_stopping));
 }
 
+// The publishers were there, and not read, before the cell named their topics.
+TEST_F(RosReadersTest, OfTopicsThatAChangedCellNamesAreHeard) {
+  Cell first = test::two_stopping_arms(), later = first;
+  for (Robot& arm : first.scene.robots) arm.stopping.stated_on.clear();
+  later.scene.robots[0].joint_states = "/left/joints";
+  PoseReader reader(first, daemon);
+  reader.start();
+  test::RosJoints others(robot), joints(robot, "rt/left/joints");
+  const dds_entity_t stated = robot.ros_writer(kRosBool, ros_dds_name("/left/stopping"));
+  ASSERT_TRUE(others.is_heard());
+  ASSERT_TRUE(test::eventually([&] {
+    others.send({"right_push"}, {0.1});
+    return reader.next() != nullptr;
+  }));
+  EXPECT_EQ(test::matched_readers(stated), 0);
+  reader.change(later);
+  Sample<std_msgs_msg_dds__Bool_> brakes;
+  brakes->data = true;
+  EXPECT_TRUE(test::eventually([&] {
+    EXPECT_EQ(dds_write(stated, &*brakes), DDS_RETCODE_OK);
+    joints.send({"push", "shoulder"}, {0.1, 0.2});
+    const PoseBatch* const came = reader.next();
+    return came != nullptr && came->joints.size() == 2 && came->joints[0].stopping;
+  }));
+}
+
 TEST_F(RosReadersTest, ThatNobodySendsAreSaidToBeMissingWithWhatIsThere) {
   EXPECT_THAT(inputs.senders_of_joints(), HasSubstr("there is no publisher of"));
   EXPECT_THAT(inputs.senders_of_joints(), HasSubstr("domain " + std::to_string(*dds.domain)));

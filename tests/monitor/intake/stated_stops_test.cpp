@@ -17,12 +17,12 @@ constexpr std::uint64_t kPlc = 7, kOtherPlc = 8;
 
 class StatedStopsOfRos : public testing::Test {
  protected:
-  // Sent now.
+  // Sent now, by a clock that is ahead.
   bool state(bool is_stopping, std::uint64_t writer = kPlc,
-             const std::string& topic = "/left/stopping") {
+             const std::string& topic = "/left/stopping", std::int64_t ahead_ns = 0) {
     RosCdr cdr;
     cdr.number(static_cast<std::uint8_t>(is_stopping));
-    return heard.take({topic, "std_msgs/msg/Bool", now(), cdr.bytes()}, writer);
+    return heard.take({topic, "std_msgs/msg/Bool", now() + ahead_ns, cdr.bytes()}, writer);
   }
   // The statement with each arm's joints, of positions that held `age_ns` ago.
   std::map<std::string, bool> stated(std::int64_t age_ns = 0) {
@@ -77,6 +77,13 @@ TEST_F(StatedStopsOfRos, EndWithTheMessagesThatStateThem) {
   EXPECT_TRUE(left());
   heard.intake.keep({1});
   EXPECT_FALSE(left()) << "its publisher is gone";
+}
+
+TEST_F(StatedStopsOfRos, OfAClockThatIsAheadEndAsSoon) {
+  state(true, kPlc, "/left/stopping", 500 * kMs);
+  EXPECT_TRUE(left());
+  heard.pass(20 * kMs + 1);
+  EXPECT_FALSE(left());
 }
 
 TEST_F(StatedStopsOfRos, DoNotHoldForPositionsFromBeforeTheBrakes) {
