@@ -82,6 +82,13 @@ bool same_input(const Object& a, const Object& b) {
          a.frame == b.frame && a.absent == b.absent;
 }
 
+// Whether what names the robots' frames and joints on ROS 2 is the same.
+bool same_senders(const Robot& a, const Robot& b) {
+  const std::string &id_a = a.person ? a.person->id : a.name,
+                    &id_b = b.person ? b.person->id : b.name;
+  return id_a == id_b && a.base.frame == b.base.frame && a.joint_states == b.joint_states;
+}
+
 // Whether the robots' variables are the same, one by one.
 bool same_variables(std::uint32_t robot_before, const Scene& before, std::uint32_t robot_now,
                     const Scene& now, const std::vector<std::uint32_t>& variables) {
@@ -95,6 +102,12 @@ bool same_variables(std::uint32_t robot_before, const Scene& before, std::uint32
     --count;
   }
   return count == 0;
+}
+
+// Positions of the robot that were sent for the scene before are of nothing in the changed one.
+void forget_samples(const Scene& before, std::uint32_t robot, SceneMap& map) {
+  for (std::size_t i = 0; i < before.variables.size(); ++i)
+    if (before.variables[i].robot == robot) map.variables_now[i] = SceneMap::kNone;
 }
 
 bool same_held(const RobotJoint& a, const Scene& before, const RobotJoint& b, const Scene& now) {
@@ -147,8 +160,15 @@ SceneMap scene_map(const Scene& before, const Scene& now) {
                .variables_now = by_name(now.variables, before.variables)};
   for (std::uint32_t robot = 0; robot < now.robots.size(); ++robot) {
     std::uint32_t& old = map.robots[robot];
-    if (old != SceneMap::kNone && !same_variables(old, before, robot, now, map.variables))
-      old = SceneMap::kNone;
+    if (old == SceneMap::kNone) continue;
+    const bool are_same = same_senders(before.robots[old], now.robots[robot]);
+    if (!are_same) forget_samples(before, old, map);
+    if (!are_same || !same_variables(old, before, robot, now, map.variables)) old = SceneMap::kNone;
+  }
+  for (std::size_t i = 0; i < before.objects.size(); ++i) {
+    std::uint32_t& object = map.objects_now[i];
+    if (object != SceneMap::kNone && before.objects[i].frame != now.objects[object].frame)
+      object = SceneMap::kNone;
   }
   for (std::size_t i = 0; i < now.variables.size(); ++i) {
     if (map.robots[now.variables[i].robot] == SceneMap::kNone) map.variables[i] = SceneMap::kNone;

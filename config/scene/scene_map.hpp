@@ -27,12 +27,13 @@ struct SceneMap {
 //    joints or base are placed otherwise, or held otherwise, or whose base has no counterpart;
 //  - an object or joint variable for which the scenes state different sources or frames;
 //  - an object that is absent by one of the scenes;
-//  - a robot whose joint variables are not all the same, with its links and variables.
+//  - a robot whose joint variables are not all the same, or that is another person, or whose base
+//    or joints come from another frame or topic, with its links and variables.
 // A pair of a contact has a counterpart if a contact of the same name, depth and end is allowed for
 // objects of the same names. Any other allowance begins anew.
 //
 // A pose or position that was sent for the scene before is passed on by `objects_now` and
-// `variables_now`, which need the name alone.
+// `variables_now`, which need the name and the same person, frame and topic.
 [[nodiscard]] SceneMap scene_map(const Scene& before, const Scene& now);
 
 }  // namespace clearance
