@@ -74,6 +74,13 @@ class ErrorReader {
 // The base of a robot that follows a frame of tf is a floating joint, placed by a sender.
 bool is_on_tf(const Robot& robot) { return !robot.base.frame.empty(); }
 
+bool is_limb(std::span<const Robot> robots, std::uint32_t object) {
+  return std::ranges::any_of(robots, [object](const Robot& robot) {
+    return robot.person &&
+           std::ranges::find(robot.links, object, &RobotLink::object) != robot.links.end();
+  });
+}
+
 void ErrorReader::read_place(MapReader& map, PlaceError& error) {
   if (const YamlNode* node = map.optional("translation"))
     error.translation =
@@ -264,6 +271,8 @@ void ErrorReader::read_object_exception(const YamlNode& node, MapReader& map) {
         quantities_.length(*shape, "the largest error of a shape", kNotNegative).value_or(0.0);
     if (found && list_.objects[*found].is_seen()) {
       diagnostics_.add(*shape, "found 'shape' of a sensor; expected 'depth_error' of that sensor");
+    } else if (found && is_limb(robots_.robots, *found)) {
+      diagnostics_.add(*shape, "found 'shape' of a person's limb; expected 'error' of the person");
     } else if (found) {
       list_.objects[*found].shape_error = error;
     }

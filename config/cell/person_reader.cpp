@@ -11,7 +11,8 @@
 namespace clearance {
 
 // A stature in a wrong unit would make a person without girth, or one as large as the cell.
-PersonKeys read_person(const YamlNode& node, MapReader& robot, const Quantities& quantities) {
+PersonKeys read_person(const YamlNode& node, const std::string& name, MapReader& robot,
+                       const Quantities& quantities) {
   Diagnostics& diagnostics = quantities.diagnostics();
   for (const char* key :
        {"srdf", "srdf_with", "prefix", "attached", "visual_as_collision", "joints", "stopping"}) {
@@ -31,12 +32,14 @@ PersonKeys read_person(const YamlNode& node, MapReader& robot, const Quantities&
   }
   if (const YamlNode* error = map.required("error"))
     keys.error = quantities.length(*error, "the error of limbs", kNotNegative).value_or(0.0);
+  keys.id = name;
   if (const YamlNode* id = map.optional("id")) {
-    keys.id = read_name(*id, "the id of a body in /humans/bodies", diagnostics).value_or("");
+    const auto text = read_text(*id, "the id of a body in /humans/bodies, or ''", diagnostics);
+    keys.id = text.value_or("");
     if (!keys.id.empty() && !is_body_id(keys.id)) {
-      diagnostics.add(*id, fmt::format("found the id '{}'; expected letters, digits and '_', as in "
-                                       "/humans/bodies/tracked",
-                                       keys.id));
+      diagnostics.add(*id, fmt::format("found the id '{}'; expected up to {} letters, digits and "
+                                       "'_', as in /humans/bodies/tracked, or '' for no body",
+                                       keys.id, kLongestBodyId));
     }
   }
   map.refuse_unknown_keys();

@@ -11,11 +11,12 @@ namespace clearance {
 struct PersonKeys {
   double stature = 0.0;  // m
   double error = 0.0;    // m: no point of the body is farther outside the capsules
-  std::string id;        // of the body; empty: the name of the robot stands for it
+  std::string id;        // as Person::id
 };
 
-// `robot` is the map of the whole robot, whose keys that no person can have are refused.
-[[nodiscard]] PersonKeys read_person(const YamlNode& node, MapReader& robot,
-                                     const Quantities& quantities);
+// `robot` is the map of the whole robot, whose keys that no person can have are refused; `name` is
+// its name, which is the id of a body where none is stated.
+[[nodiscard]] PersonKeys read_person(const YamlNode& node, const std::string& name,
+                                     MapReader& robot, const Quantities& quantities);
 
 }  // namespace clearance

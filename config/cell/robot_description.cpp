@@ -1,4 +1,5 @@
 #include "config/cell/robot_description.hpp"
+#include "config/scene/body_id.hpp"
 
 #include <fmt/format.h>
 
@@ -58,8 +59,8 @@ std::optional<RobotDescription> complete(const DescriptionKeys& keys, RobotDescr
   const DescribedPerson& person = keys.person;
   const YamlNode& at = keys.urdf != nullptr ? *keys.urdf : *person.node;
   if (person.node != nullptr) {
-    const std::string& id = person.id.empty() ? person.name : person.id;
-    if (auto missing = make_person(person.stature, person.name, id, description.robot)) {
+    if (auto missing = make_person(person.stature, person.name, body_name(person.id, person.name),
+                                   description.robot)) {
       diagnostics.add(
           at, fmt::format("found {}; expected the skeleton of ROS4HRI (REP-155)", *missing));
       return std::nullopt;

@@ -113,7 +113,7 @@ RobotKeys RobotKeysReader::read() {
     static_cast<void>(read_groups(*groups, keys_.groups, diagnostics_));
   }
   if (keys_.person_node != nullptr)
-    keys_.person = read_person(*keys_.person_node, map, quantities_);
+    keys_.person = read_person(*keys_.person_node, keys_.name, map, quantities_);
   read_part_limits(map, quantities_, keys_.limits.mesh_limits);
   map.refuse_unknown_keys();
   return std::move(keys_);

@@ -1,6 +1,7 @@
 // Each robot is read by itself: its description, its tree of joints, its base, and then its links,
 // which need all of these.
 #include "config/cell/robot_reader.hpp"
+#include "config/scene/body_id.hpp"
 
 #include <fmt/format.h>
 
@@ -48,6 +49,7 @@ class RobotReader {
  private:
   void refuse_same_name(const YamlNode& node, const RobotKeys& keys);
   void refuse_without_speed(const RobotKeys& keys, const RobotModel& model);
+  StatedBase read_base(const RobotKeys& keys, const RobotList& list);
   bool has_names_of_its_own(const RobotKeys& keys, const RobotModel& model);
   void add_links(const RobotKeys& keys, const RobotDescription& description,
                  const Membership& membership, Robot& robot);
@@ -204,6 +206,25 @@ void move_as_people(const Robot& person, std::uint32_t first,
   }
 }
 
+StatedBase RobotReader::read_base(const RobotKeys& keys, const RobotList& list) {
+  StatedBase stated;
+  if (keys.base_node != nullptr) {
+    stated = read_robot_base(*keys.base_node, list.robots, at_rest_, objects_, quantities_);
+  }
+  if (keys.attached_node != nullptr) {
+    stated.base =
+        read_robot_attachment(*keys.attached_node, list.robots, at_rest_, objects_, quantities_);
+  }
+  if (keys.person_node != nullptr && !stated.base.frame.empty()) {
+    diagnostics_.add(*keys.base_node,
+                     "found 'frame' of a person's base; expected none: its frame is body_ID");
+  }
+  if (keys.person_node != nullptr && keys.base_node == nullptr) {
+    stated.base.frame = "body_" + body_name(keys.person.id, keys.name);
+  }
+  return stated;
+}
+
 bool RobotReader::read(const YamlNode& node, RobotList& list) {
   const RobotKeys keys =
       read_robot_keys(node, defaults_, {file_.parent_path(), revision_.root()}, quantities_);
@@ -216,17 +237,7 @@ bool RobotReader::read(const YamlNode& node, RobotList& list) {
        .visual_as_collision = keys.visual_as_collision,
        .person = {keys.person_node, keys.name, keys.person.stature, keys.person.id}},
       diagnostics_, revision_);
-  StatedBase stated;
-  if (keys.base_node != nullptr) {
-    stated = read_robot_base(*keys.base_node, list.robots, at_rest_, objects_, quantities_);
-  }
-  if (keys.attached_node != nullptr) {
-    stated.base =
-        read_robot_attachment(*keys.attached_node, list.robots, at_rest_, objects_, quantities_);
-  }
-  if (keys.person_node != nullptr && keys.base_node == nullptr) {
-    stated.base.frame = "body_" + (keys.person.id.empty() ? keys.name : keys.person.id);
-  }
+  const StatedBase stated = read_base(keys, list);
   const RobotBase& base = stated.base;
   Robot robot;
   if (description) {

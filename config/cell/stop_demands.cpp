@@ -62,17 +62,25 @@ void refuse_unbounded_motion(const StoppingRobots& stopping, const RobotList& ro
                                 object.name, beside));
   }
   for (const Robot& robot : robots.robots) {
+    const auto limb = std::ranges::find_if(
+        robot.links, [](const RobotLink& each) { return each.object != RobotLink::kNoObject; });
+    if (robot.person && limb != robot.links.end()) {
+      diagnostics.add(
+          *list.places[limb->object],
+          fmt::format("found the person '{}' {}; expected a tracked object with max_speed for "
+                      "people: limbs have no limits, and could be anywhere while the robot stops",
+                      robot.name, beside));
+      continue;
+    }
     if (robot.base.frame.empty()) continue;
     const std::uint32_t first = robot.joints.front().variable;
     const bool is_bounded = std::ranges::all_of(
         std::span(robots.variables).subspan(first, variables_of(JointType::kFloating)),
         [](const JointVariable& variable) { return std::isfinite(variable.max_speed); });
     if (is_bounded) continue;
-    const auto link = std::ranges::find_if(
-        robot.links, [](const RobotLink& each) { return each.object != RobotLink::kNoObject; });
-    if (link == robot.links.end()) continue;
+    if (limb == robot.links.end()) continue;
     diagnostics.add(
-        *list.places[link->object],
+        *list.places[limb->object],
         fmt::format("found the base of '{}' on the frame '{}' without max_speed and "
                     "max_turn_speed {}; expected both: it could be anywhere while the robot stops",
                     robot.name, robot.base.frame, beside));

@@ -78,11 +78,7 @@ std::optional<ChangeFault> set_body(const std::string& id, const std::string& pe
                                          "'person'",
                                          person)};
   }
-  if (id.empty()) {
-    erase(*stated, "id");
-  } else {
-    set(*stated, "id", text_node(id));
-  }
+  set(*stated, "id", text_node(id));
   return std::nullopt;
 }
 

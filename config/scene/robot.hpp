@@ -130,7 +130,7 @@ struct RobotBase {
 // A person by the skeleton of ROS4HRI. The objects of its links say whether it is there.
 struct Person {
   // The body's name in /humans/bodies, which the names of its joints and of its frame end with.
-  // Empty: a list of bodies says that the person is there, and not as which body.
+  // Empty: the person is there, and nothing says as which body.
   std::string id;
 };
 

@@ -72,29 +72,46 @@ class Limbs {
 
   std::optional<std::string> add() {
     const Radii radii;
-    add("body", radii.pelvis, at("l_y_hip"), at("r_y_hip"));
-    add("waist", radii.trunk, Vec3::Zero(), at("torso"));
-    add("torso", radii.shoulders, at("l_y_shoulder"), at("r_y_shoulder"));
-    add("torso", radii.neck, Vec3::Zero(), at("r_head"));
-    add("p_head", radii.head, Vec3::Zero(), Vec3(0.0, 0.0, at("head").z()));
+    add("body", radii.pelvis, at("l_y_hip", "body"), at("r_y_hip", "body"));
+    add("waist", radii.trunk, Vec3::Zero(), at("torso", "waist"));
+    add("torso", radii.shoulders, at("l_y_shoulder", "torso"), at("r_y_shoulder", "torso"));
+    add("torso", radii.neck, Vec3::Zero(), at("r_head", "torso"));
+    add("p_head", radii.head, Vec3::Zero(), Vec3(0.0, 0.0, at("head", "p_head").z()));
+    meet("p_head", "y_head");
+    meet("y_head", "r_head");
     for (const std::string side : {"l_", "r_"}) {
-      add(side + "shoulder", radii.upper_arm, Vec3::Zero(), at(side + "elbow"));
-      add(side + "elbow", radii.forearm, Vec3::Zero(), at(side + "wrist"));
-      add(side + "elbow", radii.hand, at(side + "wrist"), at(side + "wrist"));
-      add(side + "hip", radii.thigh, Vec3::Zero(), at(side + "knee"));
-      add(side + "knee", radii.shin, Vec3::Zero(), at(side + "ankle"));
-      add(side + "knee", radii.foot, at(side + "ankle"), at(side + "ankle"));
+      for (const std::string joint : {"shoulder", "hip"}) {
+        meet(side + "p_" + joint, side + "y_" + joint);
+        meet(side + joint, side + "p_" + joint);
+      }
+      const Vec3 wrist = at(side + "wrist", side + "elbow"),
+                 ankle = at(side + "ankle", side + "knee");
+      add(side + "shoulder", radii.upper_arm, Vec3::Zero(), at(side + "elbow", side + "shoulder"));
+      add(side + "elbow", radii.forearm, Vec3::Zero(), wrist);
+      add(side + "elbow", radii.hand, wrist, wrist);
+      add(side + "hip", radii.thigh, Vec3::Zero(), at(side + "knee", side + "hip"));
+      add(side + "knee", radii.shin, Vec3::Zero(), ankle);
+      add(side + "knee", radii.foot, ankle, ankle);
     }
     return missing_.empty() ? std::nullopt : std::optional(missing_);
   }
 
  private:
   // Returns the place of a link in its parent, with all joints at zero.
-  Vec3 at(const std::string& link) {
+  Vec3 at(const std::string& link, const std::string& parent) {
     const auto joint = std::ranges::find(skeleton_.joints, link, &UrdfJoint::child);
-    if (joint != skeleton_.joints.end()) return joint->parent_from_child.xyz;
-    if (missing_.empty()) missing_ = fmt::format("no joint that carries the link '{}'", link);
+    if (joint != skeleton_.joints.end() && joint->parent == parent)
+      return joint->parent_from_child.xyz;
+    if (missing_.empty())
+      missing_ = fmt::format("no joint by which '{}' carries '{}'", parent, link);
     return Vec3::Zero();
+  }
+  // No limb is between links of one joint of the body, such as a shoulder.
+  void meet(const std::string& link, const std::string& parent) {
+    constexpr double kOnePlace = 1e-3;  // m
+    const double apart = at(link, parent).norm();
+    if (apart > kOnePlace && missing_.empty())
+      missing_ = fmt::format("'{}' {} m away from '{}'", link, apart, parent);
   }
   void add(const std::string& name, double radius, const Vec3& from, const Vec3& to) {
     const auto link = std::ranges::find(skeleton_.links, name, &UrdfLink::name);

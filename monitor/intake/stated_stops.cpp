@@ -77,7 +77,8 @@ bool StatedStops::is_stopping(std::uint32_t variable, std::int64_t stamp_ns, con
   if (topic == topics_.end()) return false;
   bool is_stated = false;
   for (const auto& [writer, statement] : topic->of_writers) {
-    if (now.realtime_ns - statement.last_ns > of.age_limit_ns) continue;
+    const std::int64_t age_ns = now.realtime_ns - statement.last_ns;
+    if (age_ns < 0 || age_ns > of.age_limit_ns) continue;  // below 0: the clock was set back
     if (!statement.is_stopping || statement.since_ns > stamp_ns) return false;
     is_stated = true;
   }

@@ -9,6 +9,7 @@ void TrackedBodies::change(const Cell& cell) {
   topic_ = cell.ros.moveit.tracked_bodies;
   persons_ = static_cast<std::size_t>(std::ranges::count_if(
       cell.scene.robots, [](const Robot& robot) { return robot.person.has_value(); }));
+  handed_on_ns_ = 0;
 }
 
 std::optional<Decoder::Wanted> TrackedBodies::wants(const TopicName& topic) {

@@ -31,6 +31,7 @@ class TrackedBodies final : public Decoder {
   [[nodiscard]] std::vector<NamedTopic> named() const override;
   [[nodiscard]] bool decode(std::uint32_t port, const RawMessage& message, const Now& now,
                             TopicCounts& counts) override;
+  // Hands on the next list, since the changed cell may say otherwise.
   void change(const Cell& cell) override;
   // After a second without a list of one of the trackers, hands on a message without bytes.
   void settle(const Now& now) override;

@@ -22,6 +22,18 @@ State state_of(const Robot& person, const Scene& scene) {
   return is_absent(person, scene) ? State() : State(person.person->id);
 }
 
+// True if another robot has a joint of the name that one of the person's would get.
+bool has_a_joint_of(const std::string& body, const Robot& person, const Scene& scene) {
+  const std::size_t ending = body_name(person.person->id, person.name).size();
+  return std::ranges::any_of(person.joints, [&](const RobotJoint& joint) {
+    if (joint.name.size() < ending) return false;
+    const std::string name = joint.name.substr(0, joint.name.size() - ending) + body;
+    return std::ranges::any_of(scene.variables, [&](const JointVariable& variable) {
+      return variable.name == name && &scene.robots[variable.robot] != &person;
+    });
+  });
+}
+
 // A body keeps its person, so that what is known of it stays.
 std::vector<State> states_by(std::vector<std::string> bodies, std::span<const Robot*> persons,
                              const Scene& scene) {
@@ -38,13 +50,14 @@ std::vector<State> states_by(std::vector<std::string> bodies, std::span<const Ro
     }
   }
   // Neither two persons nor a person and another robot can have one name.
-  const auto is_taken = [&](const std::string& body) {
+  const auto is_taken = [&](const std::string& body, const Robot& person) {
     return std::ranges::find(states, State(body)) != states.end() ||
-           std::ranges::find(scene.robots, body, &Robot::name) != scene.robots.end();
+           std::ranges::find(scene.robots, body, &Robot::name) != scene.robots.end() ||
+           has_a_joint_of(body, person, scene);
   };
   std::size_t given = 0;
   for (const std::string& body : bodies) {
-    if (given == free.size() || !is_body_id(body) || is_taken(body)) {
+    if (given == free.size() || !is_body_id(body) || is_taken(body, *persons[free[given]])) {
       states.back() = "";
     } else {
       states[free[given++]] = body;

@@ -51,7 +51,7 @@ TEST(Person, HasTwelveLimbsWithItsErrorThatGroupsNameAndABaseOnTheFrameOfItsBody
                                           "r_elbow_anna", "l_hip_anna", "r_hip_anna", "l_knee_anna",
                                           "r_knee_anna"));
   EXPECT_EQ(scene.robots[0].base.frame, "body_anna");
-  EXPECT_EQ(scene.robots[0].person->id, "");
+  EXPECT_EQ(scene.robots[0].person->id, "anna");
 }
 
 // Drillis and Contini: the upper arm has 0.186 of the stature, the shank 0.246.
@@ -130,6 +130,17 @@ TEST(Person, HasTheLengthsOfTheTrackersSkeleton) {
     EXPECT_EQ(variable.max_speed, kInfinity) << variable.name;
     EXPECT_EQ(variable.upper, kInfinity) << variable.name;
   }
+  std::string collar = urdf("");
+  const std::string shoulder = "<parent link=\"torso_x1\"/><child link=\"l_y_shoulder_x1\"/>";
+  ASSERT_NE(collar.find(shoulder), std::string::npos);
+  collar.replace(collar.find(shoulder), shoulder.size(),
+                 "<parent link=\"l_collar_x1\"/><child link=\"l_y_shoulder_x1\"/>");
+  collar.insert(collar.find("</robot>"),
+                "<link name=\"l_collar_x1\"/><joint name=\"l_collar_x1\" type=\"fixed\">"
+                "<parent link=\"torso_x1\"/><child link=\"l_collar_x1\"/></joint>");
+  test::write_text(folder / "human.urdf", collar);
+  EXPECT_THAT(errors_of(person_cell(robot), folder / "cell.yaml"),
+              HasSubstr("'torso' carries 'l_y_shoulder'"));
   test::write_text(folder / "human.urdf", urdf("l_wrist"));
   EXPECT_THAT(errors_of(person_cell(robot), folder / "cell.yaml"), HasSubstr("'l_wrist'"));
   test::write_text(folder / "human.urdf", "<robot name=\"arm\"><link name=\"base\"/></robot>");
@@ -146,7 +157,10 @@ TEST(Person, IsRefusedWithoutAStatureOrWithAnImplausibleOne) {
   for (const char* stature : {"1.7", "170", "2400", "-1700"})
     EXPECT_THAT(errors(std::string("error: 60, stature: ") + stature), HasSubstr("stature"));
   EXPECT_THAT(errors("error: 60, stature: 1700, id: b/7"), HasSubstr("'b/7'"));
+  EXPECT_THAT(errors("error: 60, stature: 1700, id: " + std::string(33, 'b')), HasSubstr("32"));
   EXPECT_THAT(errors("error: 60, stature: 1700", ", prefix: a_"), HasSubstr("'prefix'"));
+  EXPECT_THAT(errors("error: 60, stature: 1700", ", base: {frame: body_b1}"),
+              HasSubstr("'frame' of a person's base"));
   EXPECT_THAT(errors_of(person_cell(kAnna, "markers: false")), HasSubstr("world_frame"));
 }
 
@@ -176,6 +190,18 @@ TEST(Person, GetsAndLosesItsBodyByAChange) {
   EXPECT_FALSE(limb(edit({"anna", false, {}}), "torso_anna").absent);
   const auto refused = editor.edit(std::vector<CellChange>{SetAbsent{"post", false, "b1"}});
   EXPECT_THAT(std::get<EditRefusal>(refused).reason, HasSubstr("no person"));
+}
+
+// Neither its joints nor its frame have names that a body's can have.
+TEST(Person, WithoutABodyIsHeardOfNone) {
+  const Scene scene =
+      scene_of(person_cell("{name: anna, person: {stature: 1700, error: 60, id: ''}, "
+                           "groups: [people]}"));
+  EXPECT_EQ(scene.robots[0].person->id, "");
+  EXPECT_EQ(scene.robots[0].base.frame, "body_anna?");
+  for (const JointVariable& variable : scene.variables)
+    EXPECT_TRUE(variable.name.ends_with("_anna?") || variable.name.starts_with("anna_base/"))
+        << variable.name;
 }
 
 }  // namespace
