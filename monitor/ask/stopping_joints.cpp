@@ -13,8 +13,9 @@ namespace {
 constexpr double kMeasured = 1e-9;  // the largest relative error of an extension
 
 // A statement that lasts longer than the stop is not believed of a joint that still moves.
-bool is_braking(const TrackedVariable& state, const JointStop& stop) noexcept {
-  return state.is_stopping && (state.slowest_braking == 0.0 ||
+bool is_braking(const TrackedVariable& state, const JointVariable& variable,
+                const JointStop& stop) noexcept {
+  return state.is_stopping && (state.slowest_braking <= still_speed(variable) ||
                                seconds(elapsed(state.braking_since_ns, state.input.stamp_ns)) <=
                                    stop.time(rounded_up(state.braking_from)));
 }
@@ -32,6 +33,7 @@ StoppingJoints::StoppingJoints(const Scene& scene, std::uint32_t robot, JointTra
     const JointVariable& variable = scene.variables[joint.variable];
     if (variable.name != joint.name) continue;  // it mimics another
     Joint added{.variable = joint.variable,
+                .of = &variable,
                 .index = i,
                 .stop = &stops_.joints[i],
                 .full_speed = variable.max_speed};
@@ -108,7 +110,7 @@ void StoppingJoints::read(const Inputs& inputs, Joint& joint) noexcept {
   joint.age = is_known ? rounded_up(seconds(state.input.age_ns(inputs.time.now_ns))) : 0.0;
   age_ = std::max(age_, joint.age);
   is_assumed_ = is_assumed_ || joint.any_direction;
-  is_stopping_ = is_stopping_ && is_braking(state, stops_.joints[joint.index]);
+  is_stopping_ = is_stopping_ && is_braking(state, *joint.of, stops_.joints[joint.index]);
   is_usable_ = is_usable_ && is_known && joint.speed < kInfinity;
 }
 

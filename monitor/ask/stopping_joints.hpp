@@ -51,6 +51,7 @@ class StoppingJoints {
   static constexpr std::size_t kRows = 2;  // waypoints of a motion
   struct Joint {
     std::uint32_t variable = 0;
+    const JointVariable* of = nullptr;
     std::size_t index = 0;                         // into Robot::joints
     const JointStop* stop = nullptr;               // of the step that counts
     double acceleration = kInfinity;               // rad/s2 or m/s2

@@ -98,16 +98,24 @@ struct PositionCandidate {
     state.plausibility.use(sample.position, stamp_ns, !state.input.has_value, limits);
   }
 
-  // A joint that becomes faster is not believed to brake, until its sender begins anew.
+  // A joint that becomes faster is not believed to brake, until its sender begins anew. A statement
+  // that is interrupted goes on, unless the joint has stood or become faster meanwhile.
   void note_braking() const noexcept {
     const double speed = std::max(std::abs(state.velocity), state.sent_speed);
+    const double still = still_speed(variable);
+    if (!sample.stopping) {
+      state.is_stopping = false;
+      if (speed <= still || speed > kNoisy * state.slowest_braking)
+        state.slowest_braking = kInfinity;
+      return;
+    }
     if (state.slowest_braking == kInfinity) {
       state.braking_from = speed;
       state.braking_since_ns = stamp_ns;
     }
-    state.slowest_braking = sample.stopping ? std::min(state.slowest_braking, speed) : kInfinity;
+    state.slowest_braking = std::min(state.slowest_braking, speed);
     state.is_stopping =
-        sample.stopping && state.velocity_known && speed <= kNoisy * state.slowest_braking;
+        state.velocity_known && speed <= std::max(still, kNoisy * state.slowest_braking);
   }
 
   [[nodiscard]] std::int64_t agree_for_ns() const noexcept {

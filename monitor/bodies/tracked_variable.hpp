@@ -25,7 +25,8 @@ struct TrackedVariable {
   double may_have_moved = 0.0;
   double sent_speed = 0.0;  // that was sent with the position; 0: none was sent
   // Since its brakes have been stated to act: the least speed, rad/s or m/s; infinity: they are
-  // not. The speed at first, and the stamp of that position.
+  // not, or it has stood or become faster since. The speed at first, and the stamp of that
+  // position.
   double slowest_braking = kInfinity, braking_from = 0.0;
   std::int64_t braking_since_ns = 0;
   bool is_stopping = false;            // its brakes act, and its speed has not risen since
@@ -37,6 +38,11 @@ struct TrackedVariable {
   // `own`: before anything was heard.
   [[nodiscard]] bool is_sound(const TrackedVariable& own) const noexcept;
 };
+
+// A joint that is no faster than this stands: velocities are noisy. rad/s or m/s.
+[[nodiscard]] inline double still_speed(const JointVariable& variable) noexcept {
+  return 1e-3 * (variable.max_speed < kInfinity ? variable.max_speed : 1.0);
+}
 
 // Takes a sample into use, or returns why it must not be used and updates the contradiction state.
 // `stamp_ns` is the sample's stamp in the tick's time. `of_joint` is the repetition of the whole

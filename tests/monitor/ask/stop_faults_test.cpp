@@ -155,7 +155,8 @@ class StopInProgress : public StoppingCells {
                  "stops: {margin: 0.05}}\n"))),
         monitor_(scene_) {}
 
-  const RobotStop& tick(double speed, bool stated) {
+  // `noise`: the velocities that the joints which stand send, rad/s or m/s.
+  const RobotStop& tick(double speed, bool stated, double noise = 0.0) {
     now_ += kTick;
     angle_ += 1e-3 * speed;
     std::vector<JointSample> joints;
@@ -163,21 +164,21 @@ class StopInProgress : public StoppingCells {
       const bool is_shoulder = scene_.variables[v].name == "shoulder";
       JointSample sample = test::joint(v, is_shoulder ? angle_ : 0.0, now_);
       sample.has_velocity = true;
-      sample.velocity = is_shoulder ? speed : 0.0;
+      sample.velocity = is_shoulder ? speed : static_cast<double>(now_ / kTick % 3 - 1) * noise;
       sample.stopping = stated;
       joints.push_back(sample);
     }
     return monitor_.tick({}, joints, now_).stops.at(0);
   }
   // The least scaling of the reports while the brakes act.
-  double least_scaling(bool stated) {
+  double least_scaling(bool stated, double noise = 0.0) {
     while (tick(kSpeed, false).scaling == 1.0 && angle_ < 2.0) {
     }
     EXPECT_LT(angle_, 0.0) << "nothing was in its path";
     for (int ms = 0; ms < 40; ++ms) static_cast<void>(tick(kSpeed, false));
     double least = 1.0;
     for (double speed = kSpeed; speed > 0.0; speed -= 1e-3 * kDeceleration)
-      least = std::min(least, tick(speed, stated).scaling);
+      least = std::min(least, tick(speed, stated, noise).scaling);
     return least;
   }
 
@@ -192,6 +193,10 @@ class StopInProgress : public StoppingCells {
 
 TEST_F(StopInProgress, IsNotToldToStopAgainIfItIsStated) { EXPECT_EQ(least_scaling(true), 1.0); }
 
+TEST_F(StopInProgress, IsBelievedWhileJointsThatStandSendNoise) {
+  EXPECT_EQ(least_scaling(true, 1e-4), 1.0);
+}
+
 TEST_F(StopInProgress, CountsAnotherReactionIfItIsNotStated) {
   EXPECT_LT(least_scaling(false), 1.0);
 }
@@ -200,6 +205,14 @@ TEST_F(StopInProgress, IsBelievedForAsLongAsItTakes) {
   const double takes = kSpeed / kDeceleration;
   for (int ms = 0; ms <= 250; ++ms) EXPECT_NEAR(tick(kSpeed, true).time, takes, 1e-6) << ms;
   EXPECT_NEAR(tick(kSpeed, true).time, 0.051 + takes, 1e-6) << "it has not slowed down";
+}
+
+// Each 19th message without it: the statement is no other one for that.
+TEST_F(StopInProgress, IsBelievedNoLongerIfItFlickers) {
+  const double takes = kSpeed / kDeceleration;
+  for (int ms = 0; ms <= 250; ++ms) static_cast<void>(tick(kSpeed, ms % 19 != 0));
+  for (int ms = 0; ms <= 250; ++ms)
+    ASSERT_NEAR(tick(kSpeed, ms % 19 != 0).time, 0.051 + takes, 1e-6) << ms;
 }
 
 // A late pose of a person is no end of it: the person has gone on by their largest speed.
