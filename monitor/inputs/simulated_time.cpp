@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <utility>
 
 #include "monitor/inputs/elapsed.hpp"
@@ -80,6 +81,12 @@ std::int64_t SimulatedTime::clock_ns() const noexcept { return last().clock_ns; 
 std::int64_t SimulatedTime::now_ns(std::int64_t monotonic_ns) const noexcept {
   const Segment now = last();
   return now.after(elapsed(now.came_ns, monotonic_ns));
+}
+
+std::int64_t SimulatedTime::passes_in(std::int64_t true_ns) const noexcept {
+  const Segment now = last();
+  const double speed = static_cast<double>(now.step_ns) / static_cast<double>(now.interval_ns);
+  return static_cast<std::int64_t>(std::ceil(speed * static_cast<double>(true_ns)));
 }
 
 std::int64_t SimulatedTime::at(std::int64_t sent_ns) const noexcept {

@@ -44,6 +44,9 @@ class SimulatedTime {
   // kept counts as older than it is.
   [[nodiscard]] std::int64_t at(std::int64_t sent_ns) const noexcept;
 
+  // How much of it passes in so much true time, at the speed of the last two messages, rounded up.
+  [[nodiscard]] std::int64_t passes_in(std::int64_t true_ns) const noexcept;
+
   // The time of the coming tick: later than that of the tick before, unless an unknown time has
   // passed. In a pause, it is later by 1 ns, since no two ticks may have one time.
   [[nodiscard]] TickTime tick_time(std::int64_t monotonic_ns) noexcept;

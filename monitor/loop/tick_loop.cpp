@@ -144,6 +144,8 @@ TickTime TickLoop::tick_time() noexcept {
   TickTime time = options_.time == nullptr ? time_.read(clock_)
                                            : options_.time->tick_time(clock_.monotonic_ns());
   time.report_delay_ns = delay_.longest_ns();
+  if (options_.time != nullptr && time.report_delay_ns != TickTime::kNotMeasured)
+    time.report_delay_ns = options_.time->passes_in(time.report_delay_ns);
   return time;
 }
 

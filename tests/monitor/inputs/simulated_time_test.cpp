@@ -95,6 +95,19 @@ TEST_P(SimulatedTimes, OfMessagesAreThoseAtWhichTheyWereSent) {
   }
 }
 
+// A report that takes 8 ms is 80 simulated ms old at ten times the speed.
+TEST_P(SimulatedTimes, PassInTrueTimeByTheirSpeed) {
+  Simulation simulation(GetParam(), 10 * kMillisecond);
+  simulation.play(7 * kSecond);
+  const double passed = GetParam() * 8.0 * kMillisecond;
+  EXPECT_NEAR(static_cast<double>(simulation.time.passes_in(8 * kMillisecond)), passed,
+              1e-6 * passed + 1.0);
+  EXPECT_EQ(simulation.time.passes_in(0), 0);
+  simulation.pass(kMillisecond);
+  simulation.say(simulation.clock());
+  EXPECT_EQ(simulation.time.passes_in(8 * kMillisecond), 0) << "it is paused";
+}
+
 TEST(SimulatedTime, IsNotKnownBeforeTheFirstMessage) {
   SimulatedTime time;
   EXPECT_FALSE(time.is_known());
