@@ -71,7 +71,7 @@ TEST(ViewOfAChangedCell, ShowsTheCellInForceLiveAndAtEveryMomentOfItsRecording) 
                  "until: {distance: 5}}\n");
   std::ofstream(cell.path()) << changed;
   daemon.signal(SIGHUP);
-  EXPECT_EQ(page.wait(std::chrono::seconds(100)), 0) << page.output();
+  EXPECT_EQ(page.wait(std::chrono::seconds(200)), 0) << page.output();
   const std::vector<json> live = lines_of(page);
   ASSERT_EQ(live.size(), 2u) << page.output();
   EXPECT_FALSE(has(live[0], "wall"));
@@ -90,7 +90,7 @@ TEST(ViewOfAChangedCell, ShowsTheCellInForceLiveAndAtEveryMomentOfItsRecording) 
   std::ofstream(cell.path()) << text;
   const View replay({cell.path(), "--replay", file});
   PageScript film("changed_cell", {replay.page(), "wall", "0.1", "9999", "0.2"});
-  EXPECT_EQ(film.wait(std::chrono::seconds(100)), 0) << film.output();
+  EXPECT_EQ(film.wait(std::chrono::seconds(200)), 0) << film.output();
   const std::vector<json> shown = lines_of(film);
   ASSERT_EQ(shown.size(), 3u) << film.output();
   for (std::size_t i = 0; i < shown.size(); ++i) {

@@ -8,6 +8,7 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <thread>
+#include <utility>
 
 #include "monitor/interface/zone_cause.hpp"
 #include "tests/monitor/tick/scara_cell.hpp"
@@ -69,15 +70,13 @@ simulation:
 // The page of a running cell.
 class ViewPage : public testing::Test {
  protected:
-  explicit ViewPage(const std::string& text = swinging_cell()) : cell(text) {}
+  explicit ViewPage(std::string text = swinging_cell()) : text_(std::move(text)) {}
 
   // Runs these steps of view_page.mjs; returns what each found.
   std::map<std::string, json> run(const std::vector<std::string>& steps) {
-    const auto dds = dds_arguments(own_dds());
-    const ChildProcess daemon(kDaemon, with({cell.path()}, dds));
-    const ChildProcess robot(kRobot, with({cell.path(), "--rate", "50"}, dds));
-    const View view(with({cell.path()}, dds));
-    PageScript page("view_page", with({view.page()}, steps));
+    static std::map<std::string, Running> all;  // one for the pages of all tests of a cell
+    const Running& running = all.try_emplace(text_, text_).first->second;
+    PageScript page("view_page", with({running.view.page()}, steps));
     EXPECT_EQ(page.wait(std::chrono::seconds(280)), 0) << page.output();
     std::map<std::string, json> found;
     for (const json& line : lines_of(page)) {
@@ -87,7 +86,16 @@ class ViewPage : public testing::Test {
     return found;
   }
 
-  CellFile cell;
+ private:
+  struct Running {
+    explicit Running(const std::string& text) : cell(text) {}
+    const CellFile cell;
+    const std::vector<std::string> dds = dds_arguments(own_dds());
+    const ChildProcess daemon{kDaemon, with({cell.path()}, dds)};
+    const ChildProcess robot{kRobot, with({cell.path(), "--rate", "50"}, dds)};
+    const View view{with({cell.path()}, dds)};
+  };
+  std::string text_;
 };
 
 class SmallViewPage : public ViewPage {

@@ -21,16 +21,18 @@ await page.goto(url);
 await hasReport();
 if (times.length === 0) {
   say({ ready: true, ...(await facts()) });
-  await page.waitForFunction((name) => window.clearance?.state.report && window.clearance.state.scene.objects.some((each) => each.name === name), object, { timeout: 60_000 });
+  await page.waitForFunction((name) => window.clearance?.state.report && window.clearance.state.scene.objects.some((each) => each.name === name), object);
   await page.waitForFunction(() => document.querySelector("#attached tbody tr") && document.querySelector("#contacts tbody tr"));
   say({ errors, ...(await facts()) });
 }
 for (const time of times.map(Number)) {
   await page.evaluate((to) => window.clearance.connection.set("playback.time", to), time);
-  await page.waitForTimeout(2500); // the page may be loaded anew
-  await hasReport();
+  // Until it stands there, with the cell of that report: the page may be loaded anew.
+  await page.waitForFunction((at) => {
+    const { isAt, state } = window.clearance ?? {};
+    return isAt?.(at) && Number(state.report.scene_revision) === Number(state.scene.revision);
+  }, time);
   await page.waitForFunction(() => document.querySelectorAll("#contacts tbody tr").length === (window.clearance.state.report.contacts ?? []).length);
-  await page.waitForTimeout(500); // what is attached is drawn with the next frame
   const curve = await page.evaluate(async ([name, to]) => {
     const { pairs, scene } = window.clearance.state, pair = pairs.find(({ a, b }) => [a, b].some((id) => scene.objects[id].name === name));
     if (!pair) return null;
