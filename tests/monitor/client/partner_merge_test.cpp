@@ -35,7 +35,7 @@ class Merge : public testing::Test {
  protected:
   bool take(const clearance_msg_Distances& message) {
     heard_ns += kPeriod / 2;
-    const bool is_next = merge.take(message, heard_ns);
+    const bool is_next = merge.take(message, heard_ns, true);
     if (is_next) cycles.push_back(message.cycle);
     return is_next;
   }
@@ -293,7 +293,7 @@ Sample<clearance_msg_Distances> full_report(Random& random) {
   message.now_ns = kStart;
   message.publish_ns = kStart + 1000;
   message.state_checksum = random.next();
-  seal(message);
+  seal(message, 0);
   return sample;
 }
 
@@ -321,8 +321,8 @@ TEST_F(Merge, FindsEveryFlippedBitOfAMessageAtOnce) {
     PartnerMerge fresh;
     const bool is_of_one = *came->partner == '\0' && came->checksum == 0;
     EXPECT_FALSE(is_of_one) << "bit " << bit;
-    EXPECT_FALSE(fresh.take(*came, kStart)) << "bit " << bit;
-    EXPECT_TRUE(fresh.take(*sent, kStart));
+    EXPECT_FALSE(fresh.take(*came, kStart, has_its_crc(*came))) << "bit " << bit;
+    EXPECT_TRUE(fresh.take(*sent, kStart, has_its_crc(*sent)));
     EXPECT_EQ(fresh.check().state, PartnerState::kCorrupt) << "bit " << bit;
     ++corrupt;
   }
@@ -351,9 +351,9 @@ TEST_F(Merge, FindsEveryBitThatFlippedBeforeTheChecksumByTheReportOfThePartner) 
     bytes[bit / 8] ^= static_cast<std::byte>(1 << bit % 8);
     Sample<clearance_msg_Distances> flipped, rest, right, next;
     if (!decoder.decode(bytes, flipped) || !decoder.decode(bytes, rest)) continue;
-    seal(*flipped);
+    seal(*flipped, 0);
     as_of(*sent, *rest);
-    seal(*rest);
+    seal(*rest, 0);
     const std::vector<std::byte> unflipped = [&] {
       const auto all = again.encode(*sent);
       return std::vector<std::byte>(all.begin(), all.end());
@@ -365,17 +365,17 @@ TEST_F(Merge, FindsEveryBitThatFlippedBeforeTheChecksumByTheReportOfThePartner) 
     ASSERT_TRUE(decoder.decode(unflipped, right));
     std::strcpy(right->partner, "right");
     right->daemon = sent->daemon + 1;
-    seal(*right);
+    seal(*right, 0);
     ASSERT_TRUE(decoder.decode(unflipped, next));
     ++next->cycle;
     next->now_ns += kPeriod;
-    seal(*next);
+    seal(*next, 0);
     PartnerMerge fresh;
     const bool flipped_first = random.chance(0.5);
-    if (flipped_first) static_cast<void>(fresh.take(*flipped, kStart));
-    static_cast<void>(fresh.take(*right, kStart));
-    if (!flipped_first) static_cast<void>(fresh.take(*flipped, kStart));
-    static_cast<void>(fresh.take(*next, kStart));
+    if (flipped_first) static_cast<void>(fresh.take(*flipped, kStart, has_its_crc(*flipped)));
+    static_cast<void>(fresh.take(*right, kStart, has_its_crc(*right)));
+    if (!flipped_first) static_cast<void>(fresh.take(*flipped, kStart, has_its_crc(*flipped)));
+    static_cast<void>(fresh.take(*next, kStart, has_its_crc(*next)));
     const PartnerState told = fresh.check().state;
     EXPECT_TRUE(told == PartnerState::kDifferent || told == PartnerState::kOtherInputs ||
                 told == PartnerState::kMissing)
