@@ -86,7 +86,7 @@ class Stream {
   // True while no message may be relied on, as reason() says (END_TO_END.md). Messages that are
   // corrupt, repeated or of another address are not handed out. Both functions count the time since
   // the last good message, so they may be called without a new one.
-  [[nodiscard]] bool fail_safe() const noexcept { return reason() != ReportError::kNone; }
+  [[nodiscard]] bool fail_safe() const noexcept { return reason() != ReportError::kGood; }
   [[nodiscard]] ReportError reason() const noexcept;
   // Two faulty messages came within the error interval, and fail_safe() stays until a person has
   // looked at it: acknowledge(). The next good message ends it then.

@@ -9,7 +9,7 @@ namespace clearance::client {
 
 const char* name(ReportError error) noexcept {
   constexpr std::array kNames = {
-      "none",         "nothing heard", "silent",  "old",           "clocks disagree",
+      "good",         "nothing heard", "silent",  "old",           "clocks disagree",
       "other source", "repeated",      "corrupt", "other address", "share"};
   const auto index = static_cast<std::size_t>(error);
   return index < kNames.size() ? kNames[index] : "";
@@ -21,8 +21,8 @@ ReportError ReportJudge::refuse(const Message& message, std::int64_t at_ns) noex
   const ReportError error = !has_its_crc(message)         ? kCorrupt
                             : message.address != address_ ? kOtherAddress
                             : checker_.has_had(message)   ? kRepeated
-                                                          : kNone;
-  if (error != kNone) note(error, true, at_ns);
+                                                          : kGood;
+  if (error != kGood) note(error, true, at_ns);
   return error;
 }
 
@@ -43,11 +43,11 @@ ReportCheck ReportJudge::check(const Message& message, std::int64_t realtime_ns,
   found.error = found.other_daemon                      ? kOtherSource
                 : found.age_ns < -limit_ns_             ? kClocksDisagree
                 : is_replay || found.age_ns > limit_ns_ ? kOld
-                                                        : kNone;
-  if (found.error != kNone) {
+                                                        : kGood;
+  if (found.error != kGood) {
     note(found.error, found.error == kOtherSource && kNamesPartner, at_ns);
   } else {
-    failed_ = kNone;
+    failed_ = kGood;
     good_until_ns_ = at_ns + limit_ns_ - std::max<std::int64_t>(0, found.age_ns);
   }
   return found;
@@ -56,14 +56,14 @@ ReportCheck ReportJudge::check(const Message& message, std::int64_t realtime_ns,
 ReportError ReportJudge::error(std::int64_t at_ns) const noexcept {
   using enum ReportError;
   if (is_held()) return held_by_;
-  if (failed_ != kNone && at_ns - failed_ns_ <= limit_ns_) return failed_;
+  if (failed_ != kGood && at_ns - failed_ns_ <= limit_ns_) return failed_;
   if (good_until_ns_ == 0) return kNothingHeard;
-  return failed_ != kNone || at_ns > good_until_ns_ ? kSilent : kNone;
+  return failed_ != kGood || at_ns > good_until_ns_ ? kSilent : kGood;
 }
 
 void ReportJudge::acknowledge() noexcept {
   checker_ = ReportChecker(limits_.old_after_ns);
-  failed_ = held_by_ = ReportError::kNone;
+  failed_ = held_by_ = ReportError::kGood;
   good_until_ns_ = fault_ns_ = 0;
 }
 

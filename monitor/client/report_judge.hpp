@@ -8,7 +8,7 @@
 
 namespace clearance::client {
 
-// "none", "nothing heard", "silent", ...
+// "good", "nothing heard", "silent", ...
 [[nodiscard]] const char* name(ReportError error) noexcept;
 
 // Without a clock of its own: `at_ns` is of a clock that is never set.
@@ -32,10 +32,10 @@ class ReportJudge {
   [[nodiscard]] ReportCheck check(const Message& message, std::int64_t realtime_ns,
                                   std::int64_t at_ns) noexcept;
 
-  // Why no report may be relied on now; kNone: the last good one counts.
+  // Why no report may be relied on now; kGood: the last good one counts.
   [[nodiscard]] ReportError error(std::int64_t at_ns) const noexcept;
   // Two faulty messages came within the interval: error() stays until acknowledge().
-  [[nodiscard]] bool is_held() const noexcept { return held_by_ != ReportError::kNone; }
+  [[nodiscard]] bool is_held() const noexcept { return held_by_ != ReportError::kGood; }
   // Forgets the errors, and which daemon was heard before.
   void acknowledge() noexcept;
 
@@ -47,10 +47,10 @@ class ReportJudge {
   ReportChecker checker_;
   std::int64_t limit_ns_ = limits_.old_after_ns;  // how long the last message counts
   std::int64_t good_until_ns_ = 0;                // of the last good message; 0: none
-  ReportError failed_ = ReportError::kNone;       // since the last good message
+  ReportError failed_ = ReportError::kGood;       // since the last good message
   std::int64_t failed_ns_ = 0;                    // when
   std::int64_t fault_ns_ = 0;                     // the last faulty message; 0: none
-  ReportError held_by_ = ReportError::kNone;
+  ReportError held_by_ = ReportError::kGood;
 };
 
 }  // namespace clearance::client

@@ -279,9 +279,9 @@ bool SharedCell::is_whole() const noexcept {
 ReportError SharedCell::reason() const noexcept {
   for (const auto& share : shares_) {
     const ReportError error = share->reports.reason();
-    if (error != ReportError::kNone) return error;
+    if (error != ReportError::kGood) return error;
   }
-  return is_whole() ? ReportError::kNone : ReportError::kShare;
+  return is_whole() ? ReportError::kGood : ReportError::kShare;
 }
 
 void SharedCell::acknowledge() noexcept {

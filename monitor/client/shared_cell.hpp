@@ -63,7 +63,7 @@ class SharedCell {
   [[nodiscard]] const std::vector<ShareCheck>& shares() const noexcept { return checks_; }
   [[nodiscard]] bool is_whole() const noexcept;
   // As those of Stream: of the shares, and kShare if one is not whole.
-  [[nodiscard]] bool fail_safe() const noexcept { return reason() != ReportError::kNone; }
+  [[nodiscard]] bool fail_safe() const noexcept { return reason() != ReportError::kGood; }
   [[nodiscard]] ReportError reason() const noexcept;
   void acknowledge() noexcept;
   // "the share 'left' is missing, the share 'right' is late"; empty if it is whole.

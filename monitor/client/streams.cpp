@@ -118,7 +118,7 @@ bool Stream<Message>::take() {
     if (!take_one(reader_, *scratch_)) return false;
     at_ns = monotonic_ns();
     const ReportError error = judge_.refuse(*scratch_, at_ns);
-    is_next = error == ReportError::kNone;
+    is_next = error == ReportError::kGood;
     if constexpr (std::is_same_v<Message, clearance_msg_Distances>) {
       const bool is_of_one = *scratch_->partner == '\0' && scratch_->checksum == 0;
       if (!is_of_one && (is_next || error == ReportError::kCorrupt))

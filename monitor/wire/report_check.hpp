@@ -11,7 +11,7 @@ namespace clearance {
 
 // Why a report must not be relied on, or why no report may.
 enum class ReportError : std::uint8_t {
-  kNone = 0,
+  kGood = 0,
   kNothingHeard = 1,    // no good report has come yet
   kSilent = 2,          // no good report has come in time
   kOld = 3,             // it was published too long ago, or is replayed
@@ -38,7 +38,7 @@ struct ReportCheck {
   // Reports between the one before and this one. Partners that tick apart need not count alike:
   // between two lineages the time of the ticks counts.
   std::uint64_t missed = 0;
-  ReportError error = ReportError::kNone;  // by ReportJudge; kNone: the report is good
+  ReportError error = ReportError::kGood;  // by ReportJudge
 
   [[nodiscard]] bool fresh() const noexcept { return !is_old && !clocks_disagree; }
 };

@@ -137,7 +137,7 @@ TEST(Client, HandsOutNoFaultyReportAndIsHeldByTwoUntilAcknowledge) {
   EXPECT_TRUE(reports.is_held());
   daemon.report(3);
   ASSERT_TRUE(reports.next(kPatience));
-  EXPECT_EQ(reports.check().error, ReportError::kNone);
+  EXPECT_EQ(reports.check().error, ReportError::kGood);
   EXPECT_EQ(reports.reason(), ReportError::kCorrupt) << "it is held";
   reports.acknowledge();
   EXPECT_EQ(reports.reason(), ReportError::kNothingHeard);

@@ -64,10 +64,10 @@ class Channel : public testing::Test {
     const auto cdr = encoder.encode(message);
     return {cdr.begin(), cdr.end()};
   }
-  // As Stream does. kNone: the report is handed on as good.
+  // As Stream does. kGood: the report is handed on as good.
   ReportError hear(const Bytes& bytes) {
     if (!decoder.decode(bytes, came)) return kCorrupt;  // DDS drops it
-    if (const ReportError error = judge.refuse(*came, now); error != kNone) return error;
+    if (const ReportError error = judge.refuse(*came, now); error != kGood) return error;
     check = judge.check(*came, now, now);
     return check.error;
   }
@@ -75,7 +75,7 @@ class Channel : public testing::Test {
     for (int i = random.integer(1, 3); i > 0; --i) {
       now += kPeriod;
       past.push_back(report());
-      ASSERT_EQ(hear(past.back()), kNone);
+      ASSERT_EQ(hear(past.back()), kGood);
     }
     now += kPeriod;
   }
@@ -139,7 +139,7 @@ TEST_F(Channel, ThatCorruptsAReportIsFound) {
     corrupt(random, bytes);
     undecodable += decoder.decode(bytes, decoded) ? 0 : 1;
     const ReportError error = hear(bytes);
-    if (error == kNone) {
+    if (error == kGood) {
       ++unharmed;  // padding holds nothing
       ASSERT_EQ(bytes_of(*came), good) << "a report that differs is handed on as good";
       return;
@@ -159,7 +159,7 @@ TEST_F(Channel, ThatRepeatsAReportIsFound) {
     if (random.chance(0.5)) hear_some();
     ASSERT_EQ(hear(past[random.next() % past.size()]), kRepeated);
     ASSERT_EQ(judge.error(now), kRepeated);
-    ASSERT_EQ(hear(report()), kNone) << "one error does not hold";
+    ASSERT_EQ(hear(report()), kGood) << "one error does not hold";
   });
 }
 
@@ -170,7 +170,7 @@ TEST_F(Channel, ThatChangesTheOrderIsFound) {
     const std::size_t at = random.next() % (waiting.size() - 1);
     std::swap(waiting[at], waiting[at + 1]);
     for (std::size_t i = 0; i < waiting.size(); ++i) {
-      ASSERT_EQ(hear(waiting[i]), i == at + 1 ? kRepeated : kNone);
+      ASSERT_EQ(hear(waiting[i]), i == at + 1 ? kRepeated : kGood);
       ASSERT_TRUE(i != at || check.missed == 1u);
     }
   });
@@ -180,17 +180,17 @@ TEST_F(Channel, ThatLosesReportsIsFoundInTheFirstMissingPeriodAndByTheNextReport
   try_often([&] {
     now -= kPeriod;  // the last report has just come
     const int lost = random.integer(1, 20);
-    ASSERT_EQ(judge.error(now + 2 * kPeriod), kNone) << "the period in which it is due";
+    ASSERT_EQ(judge.error(now + 2 * kPeriod), kGood) << "the period in which it is due";
     ASSERT_EQ(judge.error(now + 2 * kPeriod + 1), kSilent);
     for (int i = 0; i < lost; ++i) {
       now += kPeriod;
       static_cast<void>(report());
     }
     now += kPeriod;
-    ASSERT_EQ(judge.error(now), lost > 1 ? kSilent : kNone);
-    ASSERT_EQ(hear(report()), kNone);
+    ASSERT_EQ(judge.error(now), lost > 1 ? kSilent : kGood);
+    ASSERT_EQ(hear(report()), kGood);
     ASSERT_EQ(check.missed, static_cast<std::uint64_t>(lost));
-    ASSERT_EQ(judge.error(now), kNone) << "it ends by itself";
+    ASSERT_EQ(judge.error(now), kGood) << "it ends by itself";
   });
 }
 
@@ -218,7 +218,7 @@ TEST_F(Channel, ThatInsertsReportsIsFound) {
     cycle = of_ours;
     ASSERT_EQ(hear(report()), kOtherSource) << "it has taken the place of ours";
     ASSERT_TRUE(judge.is_held());
-    ASSERT_EQ(hear(report()), kNone);
+    ASSERT_EQ(hear(report()), kGood);
     ASSERT_EQ(judge.error(now), kOtherSource) << "until acknowledge()";
   });
 }
@@ -273,7 +273,7 @@ TEST_F(Channel, ThatDeliversToAnotherAddressIsFound) {
     const std::string& topic = topics[random.next() % topics.size()];
     const bool is_ours = domain == 7 && partition == "demo" && topic == topics[0];
     const Bytes bytes = report(kDaemon, report_address(domain, partition, topic));
-    ASSERT_EQ(hear(bytes), is_ours ? kNone : kOtherAddress);
+    ASSERT_EQ(hear(bytes), is_ours ? kGood : kOtherAddress);
   });
 }
 
@@ -285,7 +285,7 @@ TEST_F(Channel, HoldsAfterTwoFaultsWithinTheIntervalUntilAcknowledge) {
   };
   const auto goes_on = [&] {
     now += kPeriod;
-    return hear(report()) == kNone && judge.error(now) == kNone;
+    return hear(report()) == kGood && judge.error(now) == kGood;
   };
   EXPECT_EQ(judge.error(now), kNothingHeard);
   begin();
@@ -316,8 +316,8 @@ TEST_F(Channel, IsNotHeldByWhatComesTooLate) {
     EXPECT_EQ(hear(late), kOld);
     EXPECT_EQ(judge.error(now), kOld);
     EXPECT_EQ(judge.error(now + 3 * kPeriod), kSilent) << "it does not hide the silence";
-    EXPECT_EQ(hear(report()), kNone);
-    EXPECT_EQ(judge.error(now), kNone);
+    EXPECT_EQ(hear(report()), kGood);
+    EXPECT_EQ(judge.error(now), kGood);
   }
 }
 
@@ -326,14 +326,14 @@ TEST_F(Channel, CountsFromTheTimeOfPublishingAndByThePeriodThatTheClientStates) 
   begin();
   const Bytes bytes = report();
   now += kPeriod;
-  ASSERT_EQ(hear(bytes), kNone);
-  EXPECT_EQ(judge.error(now + kPeriod), kNone);
+  ASSERT_EQ(hear(bytes), kGood);
+  EXPECT_EQ(judge.error(now + kPeriod), kGood);
   EXPECT_EQ(judge.error(now + kPeriod + 1), kSilent);
   judge = ReportJudge({.period_ns = 10 * kPeriod, .error_interval_ns = kHour}, kAddress);
   const Bytes next = report();
   now += 9 * kPeriod;
-  ASSERT_EQ(hear(next), kNone);
-  EXPECT_EQ(judge.error(now + kPeriod), kNone);
+  ASSERT_EQ(hear(next), kGood);
+  EXPECT_EQ(judge.error(now + kPeriod), kGood);
   EXPECT_EQ(judge.error(now + kPeriod + 1), kSilent);
 }
 
@@ -345,8 +345,8 @@ TEST_F(Channel, IsNotHeldByAChangeOfTheLeader) {
     message.cycle = daemon;
     message.publish_ns = now;
     seal(message, kAddress);
-    ASSERT_EQ(judge.refuse(message, now), kNone);
-    EXPECT_EQ(judge.check(message, now, now).error, daemon == 1 ? kNone : kOtherSource);
+    ASSERT_EQ(judge.refuse(message, now), kGood);
+    EXPECT_EQ(judge.check(message, now, now).error, daemon == 1 ? kGood : kOtherSource);
   }
   EXPECT_FALSE(judge.is_held());
 }

@@ -408,7 +408,7 @@ class _Live:
     ) -> None: ...
 
 class ReportError(IntEnum):
-    NONE = 0
+    GOOD = 0
     NOTHING_HEARD = 1
     SILENT = 2
     OLD = 3

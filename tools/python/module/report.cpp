@@ -206,7 +206,7 @@ void add_figures(py::class_<Report>& type) {
           "Reports between the one before and this one.")
       .def_property_readonly(
           "error", [](const Report& r) { return error_of(r.check.error); },
-          "Why it must not be relied on (ReportError); NONE: it is good.")
+          "Why it must not be relied on (ReportError); GOOD: it is good.")
       .def_property_readonly(
           "other_daemon", [](const Report& r) { return r.check.other_daemon; },
           "The report before is of another run of a daemon.")

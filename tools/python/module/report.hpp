@@ -85,7 +85,7 @@ void add_judgement(Class& type, const With& with) {
           [with](T& self) {
             return error_of(with(self, [](auto& stream) { return stream.reason(); }));
           },
-          "Why (ReportError); NONE: the last good report counts.")
+          "Why (ReportError); GOOD: the last good report counts.")
       .def(
           "acknowledge",
           [with](T& self) { with(self, [](auto& stream) { stream.acknowledge(); }); },
