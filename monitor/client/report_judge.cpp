@@ -26,13 +26,14 @@ ReportError ReportJudge::refuse(const Message& message, std::int64_t at_ns) noex
   return error;
 }
 
-// A message that names no partner cannot tell that the leader has changed from another daemon, so
-// that is no fault of it.
+// Another source is a fault of reports of a daemon on its own. Of partners, PartnerMerge decides
+// which report takes the place of which; other messages do not name the partner who leads.
 template <class Message>
 ReportCheck ReportJudge::check(const Message& message, std::int64_t realtime_ns,
                                std::int64_t at_ns) noexcept {
   using enum ReportError;
-  constexpr bool kNamesPartner = requires { message.partner; };
+  bool is_alone = false;
+  if constexpr (requires { message.partner; }) is_alone = *message.partner == '\0';
   ReportCheck found = checker_.check(message, realtime_ns);
   // No message counts for longer than the interval of errors, whatever it states.
   const std::int64_t stated_ns = std::min(message.period_ns, limits_.error_interval_ns / 2);
@@ -45,7 +46,7 @@ ReportCheck ReportJudge::check(const Message& message, std::int64_t realtime_ns,
                 : is_replay || found.age_ns > limit_ns_ ? kOld
                                                         : kGood;
   if (found.error != kGood) {
-    note(found.error, found.error == kOtherSource && kNamesPartner, at_ns);
+    note(found.error, found.error == kOtherSource && is_alone, at_ns);
   } else {
     failed_ = kGood;
     good_until_ns_ = at_ns + limit_ns_ - std::max<std::int64_t>(0, found.age_ns);

@@ -337,8 +337,17 @@ TEST_F(Channel, CountsFromTheTimeOfPublishingAndByThePeriodThatTheClientStates) 
   EXPECT_EQ(judge.error(now + kPeriod + 1), kSilent);
 }
 
-// A leader's messages go over to its partner, and they name neither.
+// Partners that tick apart count otherwise. A leader's other messages go over to its partner, and
+// they name neither.
 TEST_F(Channel, IsNotHeldByAChangeOfTheLeader) {
+  begin();
+  std::strcpy(sent->partner, "left");
+  for (int i = 0; i < 9; ++i) {
+    cycle -= i % 2 == 0 ? 0 : 7;
+    ASSERT_EQ(hear(report(kDaemon + 1)), i % 2 == 0 && i > 0 ? kGood : kOtherSource);
+  }
+  EXPECT_FALSE(judge.is_held());
+  judge.acknowledge();
   for (std::uint64_t daemon = 1; daemon <= 9; ++daemon) {
     clearance_msg_Separation message{};
     message.daemon = daemon;
