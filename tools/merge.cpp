@@ -97,6 +97,8 @@ class ShareLog {
         return log_line(lines::kShareOtherRevision, check.name, check.scene_revision, revision);
       case client::ShareState::kOtherDivision:
         return log_line(lines::kShareOtherDivision, check.name);
+      case client::ShareState::kHeld:
+        return log_line(lines::kShareHeld, check.name);
     }
   }
 

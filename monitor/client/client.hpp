@@ -24,6 +24,7 @@
 #include "config/cell/topics.hpp"
 #include "monitor/client/complete_reports.hpp"
 #include "monitor/client/partner_merge.hpp"
+#include "monitor/client/report_judge.hpp"
 #include "monitor/participant/dds_options.hpp"
 #include "monitor/wire/dds_sample.hpp"
 #include "monitor/wire/report_check.hpp"
@@ -58,6 +59,10 @@ class Connection {
 struct StreamOptions {
   std::chrono::nanoseconds old_after = std::chrono::milliseconds(100);  // ReportChecker's limit
   std::int32_t depth = 64;  // messages that may wait while the program does other work
+  // A good message counts for this time after it was published. 0: twice the period that it states.
+  std::chrono::nanoseconds period{0};
+  // Two faulty messages within this time hold fail_safe() until acknowledge().
+  std::chrono::nanoseconds error_interval = std::chrono::hours(1);
 };
 
 // A topic that the daemon writes in every tick. `Message` is the message of one of the types below.
@@ -78,6 +83,15 @@ class Stream {
   [[nodiscard]] const Message* operator->() const noexcept { return &*message_; }
   // Tells whether it is fresh, whether the daemon is the same, and how many reports are missing.
   [[nodiscard]] const ReportCheck& check() const noexcept { return check_; }
+  // True while no message may be relied on, as reason() says (END_TO_END.md). Messages that are
+  // corrupt, repeated or of another address are not handed out. Both functions count the time since
+  // the last good message, so they may be called without a new one.
+  [[nodiscard]] bool fail_safe() const noexcept { return reason() != ReportError::kGood; }
+  [[nodiscard]] ReportError reason() const noexcept;
+  // Two faulty messages came within the error interval, and fail_safe() stays until a person has
+  // looked at it: acknowledge(). The next good message ends it then.
+  [[nodiscard]] bool is_held() const noexcept { return judge_.is_held(); }
+  void acknowledge() noexcept { judge_.acknowledge(); }
   // Takes the last message, in exchange for a sample that may be used again.
   void exchange(Sample<Message>& with) noexcept { std::swap(*message_, *with); }
   // For a wait on several streams.
@@ -107,7 +121,7 @@ class Stream {
   // Messages are read into scratch_ first. If a writer leaves, Cyclone clears the sample that it
   // reads into, and message_ must keep the last message.
   Sample<Message> message_, scratch_;
-  ReportChecker checker_;
+  ReportJudge judge_;
   ReportCheck check_;
   PartnerMerge merge_;  // of reports, here and below
   PartnerCheck partner_;

@@ -62,8 +62,9 @@ bool PartnerMerge::contradicts(const clearance_msg_Distances& report) const noex
          (report.cycle > cycle_) != (report.now_ns > now_ns_);
 }
 
-bool PartnerMerge::take(const clearance_msg_Distances& report, std::int64_t heard_ns) {
-  if (!has_its_checksums(report)) {
+bool PartnerMerge::take(const clearance_msg_Distances& report, std::int64_t heard_ns,
+                        bool is_sound) {
+  if (!is_sound) {
     note(PartnerState::kCorrupt, report);
     return false;
   }

@@ -18,7 +18,7 @@ enum class PartnerState : std::uint8_t {
   kOtherInputs = 3,
   // The partner's report has the same inputs and other bits: one of the two machines is faulty.
   kDifferent = 4,
-  // A report does not have the checksum that it states. It was not handed out.
+  // A report does not have the CRC that it states. It was not handed out.
   kCorrupt = 5,
 };
 [[nodiscard]] const char* name(PartnerState state) noexcept;
@@ -44,8 +44,10 @@ struct PartnerCheck {
 class PartnerMerge {
  public:
   // Takes a report of any partner, in the order of arrival. `heard_ns` is when, by a clock that is
-  // never set. Returns true if it is to be handed out; check() is then about the reports before it.
-  [[nodiscard]] bool take(const clearance_msg_Distances& report, std::int64_t heard_ns);
+  // never set. `is_sound`: it has the CRC that it states. Returns true if it is to be handed out;
+  // check() is then about the reports before it.
+  [[nodiscard]] bool take(const clearance_msg_Distances& report, std::int64_t heard_ns,
+                          bool is_sound);
   [[nodiscard]] const PartnerCheck& check() const noexcept { return check_; }
   // The daemons of both partners, and when their last good report was heard, whether it was handed
   // out or not. `daemon` 0: none.

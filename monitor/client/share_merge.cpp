@@ -24,9 +24,11 @@ constexpr double kNone = std::numeric_limits<double>::infinity();
 
 // Lists the fields that joining treats, so that a new field does not compile before it is treated.
 constexpr std::string_view kJoined[] = {
-    // of the cell: the caller names itself
-    "daemon", "partner", "lineage", "checksum", "state_checksum", "delivery_checksum",
-    "changes_since", "cycle", "scene_revision",
+    // of the cell: the caller names itself, and seals the message
+    "daemon", "partner", "lineage", "checksum", "state_checksum", "delivery_checksum", "period_ns",
+    "address", "changes_since", "cycle", "scene_revision",
+    // none: the shares may have used different batches of a source
+    "source_contents",
     // join_reports, add_counts, join_pairs and join_sources
     "now_ns", "publish_ns", "clock_offset_ns", "report_delay_ns", "newest_pose_ns",
     "oldest_pose_ns", "pairs_total", "unknown", "stale", "evaluated", "carried", "queries",
@@ -174,8 +176,8 @@ clearance_msg_RobotStop joined_stop(const ShareMap& map, std::span<const ShareVi
 }  // namespace
 
 const char* name(ShareState state) noexcept {
-  constexpr std::array kNames = {"whole", "missing", "late", "of another revision",
-                                 "divided otherwise"};
+  constexpr std::array kNames = {
+      "whole", "missing", "late", "of another revision", "divided otherwise", "held"};
   const auto index = static_cast<std::size_t>(state);
   return index < kNames.size() ? kNames[index] : "";
 }

@@ -20,6 +20,7 @@ enum class ShareState : std::uint8_t {
   kLate = 2,           // its last report is too old, or its clock disagrees with ours
   kOtherRevision = 3,  // it has another scene than the others, or one that is not known yet
   kOtherDivision = 4,  // it divides this scene otherwise: a pair may be in no share
+  kHeld = 5,           // two of its messages were faulty: until SharedCell::acknowledge()
 };
 // "whole", "missing", ...
 [[nodiscard]] const char* name(ShareState state) noexcept;

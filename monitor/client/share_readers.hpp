@@ -67,6 +67,14 @@ struct SharedCell::ShareStreams {
   }
   ~ShareStreams() { dds_delete(zones); }
 
+  [[nodiscard]] bool is_held() const noexcept {
+    return reports.is_held() || separations.is_held() || (gradients && gradients->is_held());
+  }
+  void acknowledge() noexcept {
+    reports.acknowledge();
+    separations.acknowledge();
+    if (gradients) gradients->acknowledge();
+  }
   // Up to two reports: the second one waits while the first one is not used yet.
   void take(std::int64_t now_ns) {
     while (!has_ahead && reports.next()) {

@@ -176,6 +176,7 @@ void SharedCell::judge(std::int64_t now_ns) {
     check.state = is_late || check.age_ns < -late_ns_        ? ShareState::kLate
                   : report.scene_revision != map_.revision() ? ShareState::kOtherRevision
                   : !is_divided_alike(i)                     ? ShareState::kOtherDivision
+                  : share->is_held()                         ? ShareState::kHeld
                                                              : ShareState::kWhole;
   }
 }
@@ -273,6 +274,18 @@ bool SharedCell::is_whole() const noexcept {
   return !checks_.empty() && std::ranges::all_of(checks_, [](const ShareCheck& check) {
     return check.state == ShareState::kWhole;
   });
+}
+
+ReportError SharedCell::reason() const noexcept {
+  for (const auto& share : shares_) {
+    const ReportError error = share->reports.reason();
+    if (error != ReportError::kGood) return error;
+  }
+  return is_whole() ? ReportError::kGood : ReportError::kShare;
+}
+
+void SharedCell::acknowledge() noexcept {
+  for (const auto& share : shares_) share->acknowledge();
 }
 
 std::uint64_t SharedCell::missed() const noexcept {

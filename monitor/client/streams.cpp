@@ -100,7 +100,9 @@ template <class Message>
 Stream<Message>::Stream(Connection& connection, const StreamOptions& options)
     : reader_(make_reader(connection, kind_of<Message>(), options.depth)),
       wait_(std::make_unique<DataWait>(connection.participant(), std::vector{reader_})),
-      checker_(options.old_after.count()) {}
+      judge_(
+          {options.old_after.count(), options.period.count(), options.error_interval.count()},
+          connection.participant().address(connection.topics().*topic(kind_of<Message>()).name)) {}
 
 template <class Message>
 Stream<Message>::~Stream() {
@@ -111,17 +113,21 @@ Stream<Message>::~Stream() {
 template <class Message>
 bool Stream<Message>::take() {
   bool is_next = false;
+  std::int64_t at_ns = 0;
   while (!is_next) {
     if (!take_one(reader_, *scratch_)) return false;
-    is_next = true;
+    at_ns = monotonic_ns();
+    const ReportError error = judge_.refuse(*scratch_, at_ns);
+    is_next = error == ReportError::kGood;
     if constexpr (std::is_same_v<Message, clearance_msg_Distances>) {
       const bool is_of_one = *scratch_->partner == '\0' && scratch_->checksum == 0;
-      is_next = is_of_one || merge_.take(*scratch_, monotonic_ns());
+      if (!is_of_one && (is_next || error == ReportError::kCorrupt))
+        is_next = merge_.take(*scratch_, at_ns, is_next);
       if (is_next) static_cast<void>(whole_.complete(*scratch_));
     }
   }
   std::swap(*message_, *scratch_);
-  check_ = checker_.check(*message_, now_ns());
+  check_ = judge_.check(*message_, now_ns(), at_ns);
   partner_ = merge_.check();
   return true;
 }
@@ -146,6 +152,11 @@ bool Stream<Message>::newest(std::chrono::nanoseconds timeout) {
   while (take()) worst = worse(worst, partner_);
   partner_ = std::move(worst);
   return true;
+}
+
+template <class Message>
+ReportError Stream<Message>::reason() const noexcept {
+  return judge_.error(monotonic_ns());
 }
 
 template <class Message>

@@ -218,7 +218,7 @@ void PartnerPort::hear_reports() {
   dds_sample_info_t info;
   while (take(reports_reader_, report_, info)) {
     const bool is_of_one = *report_->partner == '\0' && report_->checksum == 0;
-    if (!is_of_one && !has_its_checksums(*report_)) {
+    if (!is_of_one && !has_its_crc(*report_)) {
       reports_.note_corrupt(*report_);
       continue;
     }

@@ -15,6 +15,7 @@
 #include "monitor/app/log_line.hpp"
 #include "monitor/dds/dds_log.hpp"
 #include "monitor/files/build_info.hpp"
+#include "monitor/loop/batch_store.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/loop/scene_capacity.hpp"
 
@@ -247,6 +248,7 @@ bool PoseReader::hand_over(PoseBatch& batch) noexcept {
   if (slot == nullptr) return false;
   if (sensors_) sensors_->note(batch);
   batch.came_ns = SystemClock().monotonic_ns();
+  batch.content = content_of(batch);
   std::swap(*slot, batch);
   ring_.push();
   return true;

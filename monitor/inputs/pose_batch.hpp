@@ -74,7 +74,8 @@ struct PoseBatch {
   std::uint64_t scene_revision = 0;  // of the catalogue that its ids are from; 0: not stated
   std::vector<PoseSample> samples;
   std::vector<JointSample> joints = {};
-  std::int64_t came_ns = 0;  // when it was handed over, CLOCK_MONOTONIC; 0: not known
+  std::int64_t came_ns = 0;   // when it was handed over, CLOCK_MONOTONIC; 0: not known
+  std::uint64_t content = 0;  // content_of() it when it was handed over; 0: not known
 
   // Keeps the allocated memory.
   void clear() noexcept {
@@ -95,6 +96,7 @@ struct PoseBatch {
 struct SourceUse {
   SourceName source;
   std::uint64_t sequence_number = 0;
+  std::uint64_t content = 0;  // PoseBatch::content
 };
 
 }  // namespace clearance

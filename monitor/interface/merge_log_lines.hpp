@@ -30,4 +30,9 @@ inline constexpr LogLine<Text> kShareOtherDivision{
     "the share '{}' divides the cell otherwise than the others, so that a pair may be in no share: "
     "its pairs are unknown, and its zones active"};
 
+inline constexpr LogLine<Text> kShareHeld{
+    "share-held", kError,
+    "two messages of the share '{}' were faulty within an hour: its pairs are unknown, and its "
+    "zones active, until this program is started again"};
+
 }  // namespace clearance::lines

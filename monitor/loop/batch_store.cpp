@@ -59,7 +59,7 @@ void BatchStore::take_in() noexcept {
     if (tail_ - head_ == slots_.size()) ++head_;
     Stored& stored = at(tail_++);
     stored.batch = *batch;
-    stored.content = content_of(*batch);
+    stored.content = batch->content != 0 ? batch->content : content_of(*batch);
     stored.waits = true;
     stored.given = false;
   }

@@ -288,7 +288,8 @@ void TickLoop::note_source(const PoseBatch& batch) noexcept {
       used_.begin(), end, [&batch](const SourceUse& use) { return use.source == batch.source; });
   if (found == used_.end()) return;  // the port admits at most kMaxSources
   if (found == end) ++used_count_;
-  *found = {.source = batch.source, .sequence_number = batch.sequence_number};
+  *found = {
+      .source = batch.source, .sequence_number = batch.sequence_number, .content = batch.content};
 }
 
 // Of the robot that ticks follow: its joints, and not its base on tf, which has another clock.

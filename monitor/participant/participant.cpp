@@ -10,6 +10,7 @@
 #include <string_view>
 
 #include "monitor/participant/domain_configuration.hpp"
+#include "monitor/wire/report_checksum.hpp"
 
 #if defined(__SANITIZE_THREAD__)
 // The packaged Cyclone is built without ThreadSanitizer, which therefore sees its locks but not its
@@ -180,11 +181,16 @@ Participant::Participant(dds_entity_t participant, const std::string& partition)
 
 void Participant::make_publisher_and_subscriber(const std::string& partition) {
   partition_ = partition;
+  check_dds(dds_get_domainid(participant_, &domain_id_), "asking for the domain");
   const Qos qos = partition_qos(partition);
   publisher_ =
       check_dds(dds_create_publisher(participant_, qos.get(), nullptr), "making a publisher");
   subscriber_ =
       check_dds(dds_create_subscriber(participant_, qos.get(), nullptr), "making a subscriber");
+}
+
+std::uint64_t Participant::address(const std::string& topic) const noexcept {
+  return report_address(domain_id_, partition_, topic);
 }
 
 // Deletes readers and writers too. Topics are deleted with the participant, but only if it is our

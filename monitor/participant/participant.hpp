@@ -83,6 +83,8 @@ class Participant {
   dds_entity_t ros_writer(const RosType& type, const std::string& name);
   [[nodiscard]] dds_entity_t handle() const noexcept { return participant_; }
   [[nodiscard]] const std::string& partition() const noexcept { return partition_; }
+  // A number of this domain, this partition and a topic, as the messages of a tick state it.
+  [[nodiscard]] std::uint64_t address(const std::string& topic) const noexcept;
   // "domain 7, partition demo, interface lo, datagrams of up to 65000 B"
   [[nodiscard]] const std::string& where() const noexcept { return where_; }
   // Says how to start another program on the same network: the CYCLONEDDS_URI to copy.
@@ -93,6 +95,7 @@ class Participant {
   dds_entity_t make_topic(const dds_topic_descriptor_t& type, const std::string& name);
 
   bool is_own_ = true;
+  dds_domainid_t domain_id_ = 0;
   std::string partition_, where_, how_to_reach_;
   std::shared_ptr<const dds_entity_t> domain_;  // shared by the participants of this process
   dds_entity_t participant_ = 0, publisher_ = 0, subscriber_ = 0;

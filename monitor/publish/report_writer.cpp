@@ -62,7 +62,8 @@ ReportWriter::CellMessages::CellMessages(const Cell& the_cell, const SceneInForc
       gradients(cell.scene),
       pairs(cell.shares.own_pairs()),
       changed(static_cast<std::uint64_t>(
-          std::llround(std::ceil(cell.full_every_s * cell.scene.rate_hz)))) {
+          std::llround(std::ceil(cell.full_every_s * cell.scene.rate_hz)))),
+      period_ns(std::llround(1e9 / cell.scene.rate_hz)) {
   distances->daemon = separation->daemon = daemon;
 }
 
@@ -247,7 +248,7 @@ void ReportWriter::write_report(const QueuedReport& queued) {
     clearance_msg_Gradients& gradients = now_->gradients.of(queued.report, dds_time());
     gradients.daemon = identity_.id;
     now_->pairs.in(gradients);
-    write(TopicKind::kGradients, gradients_, &gradients, "gradients");
+    send(TopicKind::kGradients, gradients_, gradients, "gradients");
   }
   zones_.write(queued.report, now_->pairs);
   note_delay(queued, published);
@@ -280,8 +281,7 @@ bool ReportWriter::write_distances(const QueuedReport& queued, const TickTag& ta
     message.state_checksum = sum.value();
   }
   now_->changed.reduce(message);
-  if (partner_ != nullptr) seal(message);
-  const bool published = write(TopicKind::kDistances, distances_, &message, "distances");
+  const bool published = send(TopicKind::kDistances, distances_, message, "distances");
   if (partner_ != nullptr) partner_->published(message);
   return published;
 }
@@ -311,7 +311,7 @@ void ReportWriter::note_standing(PartnerStanding standing) {
 void ReportWriter::write_separation(const Report& report) {
   to_wire(report, dds_time(), *now_->separation);
   now_->pairs.in(*now_->separation);
-  write(TopicKind::kSeparation, separation_, &*now_->separation, "separation");
+  send(TopicKind::kSeparation, separation_, *now_->separation, "separation");
 }
 
 // Failed writes count as dropped: in both cases the client got nothing.
@@ -336,6 +336,13 @@ void ReportWriter::write_health(const LoopStatistics& statistics) {
   zones_.end_second();
   contact_log_.end_second();
   health_log_.update(*sample, [this] { return poses_.senders_of_joints(); });
+}
+
+template <class Message>
+bool ReportWriter::send(TopicKind kind, dds_entity_t writer, Message& message, const char* what) {
+  message.period_ns = now_->period_ns;
+  seal(message, participant_.address(topics_.*topic(kind).name));
+  return write(kind, writer, &message, what);
 }
 
 bool ReportWriter::write(TopicKind kind, dds_entity_t writer, const void* sample,

@@ -92,6 +92,7 @@ class ReportWriter {
     GradientMessage gradients;
     MapPairs pairs;  // to the ids of the whole cell
     ChangedPairs changed;
+    std::int64_t period_ns;
 
     CellMessages(const Cell& the_cell, const SceneInForce& in_force, ReportQueue& the_queue,
                  std::uint64_t daemon);
@@ -110,6 +111,9 @@ class ReportWriter {
   void settle_catalogue();
   void write_separation(const Report& report);
   void write_health(const LoopStatistics& statistics);
+  // Seals a message of the tick, and writes it.
+  template <class Message>
+  bool send(TopicKind kind, dds_entity_t writer, Message& message, const char* what);
   bool write(TopicKind kind, dds_entity_t writer, const void* sample, const char* what);
 
   Participant& participant_;

@@ -120,6 +120,7 @@ Sample<clearance_msg_Distances> make_distances(const Scene& scene) {
   Sample<clearance_msg_Distances> sample;
   reserve_sequence(sample->pairs, static_cast<std::size_t>(published));
   reserve_sequence(sample->sources, clearance_msg_kMaxSources);
+  reserve_sequence(sample->source_contents, clearance_msg_kMaxSources);
   reserve_sequence(sample->contacts, contact_pairs(scene).size());
   reserve_sequence(sample->hidden, hidden_pairs(scene).size());
   reserve_sequence(sample->active_zones, scene.zones.size());
@@ -136,6 +137,9 @@ bool to_wire(const Report& report, std::span<const SourceUse> sources, std::int6
     copy_text(sources[i].source.view(), out.sources._buffer[i].source);
     out.sources._buffer[i].sequence_number = sources[i].sequence_number;
   }
+  out.source_contents._length = std::min(out.sources._length, out.source_contents._maximum);
+  for (std::uint32_t i = 0; i < out.source_contents._length; ++i)
+    out.source_contents._buffer[i] = sources[i].content;
   auto& active = out.active_zones;
   active._length = 0;
   for (std::uint32_t zone = 0; zone < report.zones.size(); ++zone) {

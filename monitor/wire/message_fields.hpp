@@ -21,6 +21,9 @@ struct DeliveryFields {
   static constexpr void for_each(Visit&& visit, Message&... message) {
     visit(Field{"daemon", Meaning::kDelivery}, message.daemon...);
     visit(Field{"publish_ns", Meaning::kDelivery}, message.publish_ns...);
+    visit(Field{"period_ns", Meaning::kDelivery}, message.period_ns...);
+    visit(Field{"address", Meaning::kDelivery}, message.address...);
+    visit(Field{"delivery_checksum", Meaning::kDelivery}, message.delivery_checksum...);
   }
 };
 
@@ -34,8 +37,8 @@ struct DistancesMessageFields {
     visit(Field{"checksum", Meaning::kDelivery}, message.checksum...);
     visit(Field{"state_checksum", Meaning::kDelivery}, message.state_checksum...);
     visit(Field{"changes_since", Meaning::kDelivery}, message.changes_since...);
-    visit(Field{"delivery_checksum", Meaning::kDelivery}, message.delivery_checksum...);
     visit(Field{"active_zones", Meaning::kDelivery}, message.active_zones...);
+    visit(Field{"source_contents", Meaning::kDelivery}, message.source_contents...);
     DistanceFields::for_each(visit, message...);
   }
 };

@@ -9,6 +9,20 @@
 
 namespace clearance {
 
+// Why a report must not be relied on, or why no report may.
+enum class ReportError : std::uint8_t {
+  kGood = 0,
+  kNothingHeard = 1,    // no good report has come yet
+  kSilent = 2,          // no good report has come in time
+  kOld = 3,             // it was published too long ago, or is replayed
+  kClocksDisagree = 4,  // it was published later than now
+  kOtherSource = 5,     // it is not of the daemon of the one before, or of its partner
+  kRepeated = 6,        // its cycle is not above that of the one before
+  kCorrupt = 7,         // it has not the CRC that it states, or states none
+  kOtherAddress = 8,    // it was written for another domain, partition or topic
+  kShare = 9,           // a share of the cell is not whole
+};
+
 // The result for one report.
 struct ReportCheck {
   // Since it was published, by the client's clock. Negative: the clock of the daemon's machine is
@@ -24,6 +38,7 @@ struct ReportCheck {
   // Reports between the one before and this one. Partners that tick apart need not count alike:
   // between two lineages the time of the ticks counts.
   std::uint64_t missed = 0;
+  ReportError error = ReportError::kGood;  // by ReportJudge
 
   [[nodiscard]] bool fresh() const noexcept { return !is_old && !clocks_disagree; }
 };
@@ -57,6 +72,14 @@ class ReportChecker {
     cycle_ = report.cycle;
     revision_ = report.scene_revision;
     return found;
+  }
+
+  // The daemon has sent this report, or a later one, before. Partners send each cycle twice, and
+  // replays have no number of a daemon.
+  template <class Message>
+  [[nodiscard]] bool has_had(const Message& report) const noexcept {
+    return report.daemon != 0 && report.daemon == daemon_ && report.cycle <= cycle_ &&
+           !is_of_partner(report);
   }
 
  private:

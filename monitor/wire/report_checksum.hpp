@@ -1,24 +1,33 @@
-// Checksums by which the reports of two daemons are compared, and a message with what it says of
-// itself.
+// Checksums by which the reports of two daemons are compared, and the CRC by which a client finds
+// that a message is not as its daemon wrote it.
 #pragma once
 
 #include <cstdint>
+#include <string_view>
 #include <type_traits>
+#include <utility>
 #include <vector>
 
 #include "monitor/inputs/checksum.hpp"
+#include "monitor/wire/crc64.hpp"
 #include "monitor/wire/message_fields.hpp"
 
 namespace clearance {
 
-// For the lists of fields: the same for a report and for its message. Leaves out who sent it.
-class AddToChecksum {
+// For the lists of fields: the same for a report and for its message. A Checksum leaves out who
+// sent it, a CRC does not.
+template <class Sum>
+class AddToSum {
  public:
-  explicit AddToChecksum(Checksum& sum) : sum_(sum) {}
+  explicit AddToSum(Sum& sum) : sum_(sum) {}
 
   template <class Value>
   void operator()(const Field& field, const Value& value) const noexcept {
-    if (field.meaning != Meaning::kDelivery) add(value);
+    if constexpr (std::is_same_v<Sum, Crc64>) {
+      add(value);
+    } else {
+      if (field.meaning != Meaning::kDelivery) add(value);
+    }
   }
 
  private:
@@ -26,6 +35,14 @@ class AddToChecksum {
   requires(std::is_arithmetic_v<Value> ||
            std::is_enum_v<Value>) void add(const Value& value) const noexcept {
     sum_.add(value);
+  }
+  // A text counts up to its end, with that.
+  template <std::size_t N>
+  void add(const char (&text)[N]) const noexcept {
+    for (std::size_t i = 0; i < N; ++i) {
+      sum_.add(text[i]);
+      if (text[i] == 0) return;
+    }
   }
   void add(const Vec3& v) const noexcept { sum_.add3(v); }
   void add(const clearance_msg_Vector3& v) const noexcept {
@@ -48,8 +65,9 @@ class AddToChecksum {
     for (std::uint32_t i = 0; i < list._length; ++i) add(list._buffer[i]);
   }
 
-  Checksum& sum_;
+  Sum& sum_;
 };
+using AddToChecksum = AddToSum<Checksum>;
 
 // The checksum of everything in Distances that the tick determines, from a report or its message.
 template <class Report>
@@ -59,14 +77,15 @@ template <class Report>
   return sum.value();
 }
 
-// The checksum that partners compare beside state_checksum: of the report, and of the zones that
-// the message says are active. A message that carries only what changed depends on those before it:
-// then state_checksum stands for the whole report, too.
+// The checksum that partners compare beside state_checksum: of the report, of the zones that the
+// message says are active, and of its period. A message that carries only what changed depends on
+// those before it: then state_checksum stands for the whole report, too.
 [[nodiscard]] inline std::uint64_t compared_checksum(
     const clearance_msg_Distances& message) noexcept {
   Checksum sum;
   sum.add(message.changes_since == 0 ? message.checksum : std::uint64_t{0});
   AddToChecksum{sum}(Field{}, message.active_zones);
+  sum.add(message.period_ns);
   return sum.value();
 }
 
@@ -75,7 +94,7 @@ inline void add_text(const char* text, Checksum& sum) noexcept {
   sum.add(std::uint64_t{0});
 }
 
-// A checksum of the inputs on which a message rests: its sources with their numbers.
+// A checksum of the inputs on which a message rests: its sources, with numbers and contents.
 [[nodiscard]] inline std::uint64_t inputs_checksum_of(
     const clearance_msg_Distances& message) noexcept {
   Checksum sum;
@@ -84,37 +103,46 @@ inline void add_text(const char* text, Checksum& sum) noexcept {
     add_text(message.sources._buffer[i].source, sum);
     sum.add(message.sources._buffer[i].sequence_number);
   }
+  AddToChecksum{sum}(Field{}, message.source_contents);
   return sum.value();
 }
 
-// Covers the fields of a message that checksum_of() leaves out: who sent it, when, and on which
-// inputs, and the zones, whose whole states are in state_checksum.
-[[nodiscard]] inline std::uint64_t delivery_checksum_of(
-    const clearance_msg_Distances& message) noexcept {
-  Checksum sum;
-  sum.add(message.daemon);
-  sum.add(message.publish_ns);
-  add_text(message.partner, sum);
-  sum.add(message.lineage);
-  sum.add(message.checksum);
-  sum.add(message.state_checksum);
-  sum.add(message.changes_since);
-  sum.add(inputs_checksum_of(message));
-  AddToChecksum{sum}(Field{}, message.active_zones);
-  return sum.value();
+// A number of what a message of a tick is written for.
+[[nodiscard]] inline std::uint64_t report_address(std::uint32_t domain, std::string_view partition,
+                                                  std::string_view topic) noexcept {
+  Crc64 crc;
+  crc.add(domain);
+  for (const std::string_view text : {partition, topic}) {
+    for (const char c : text) crc.add(c);
+    crc.add('\0');
+  }
+  return crc.value();
 }
 
-// States both checksums in a message that is complete otherwise.
-inline void seal(clearance_msg_Distances& message) noexcept {
-  message.checksum = checksum_of(message);
-  message.delivery_checksum = delivery_checksum_of(message);
+// The CRC of all fields of a message but the one that states it.
+template <class Message>
+[[nodiscard]] std::uint64_t crc_of(Message message) noexcept {
+  message.delivery_checksum = 0;
+  Crc64 crc;
+  for_each_field(AddToSum<Crc64>(crc), std::as_const(message));
+  return crc.value();
 }
 
-// No bit of the message has flipped since its daemon stated them.
-[[nodiscard]] inline bool has_its_checksums(const clearance_msg_Distances& message) noexcept {
-  const std::uint64_t delivery = message.delivery_checksum;
-  return checksum_of(message) == message.checksum &&
-         (delivery == 0 || delivery == delivery_checksum_of(message));
+// States the address and the CRC in a message that is complete otherwise, and in one of a partner
+// the checksum that partners compare.
+template <class Message>
+void seal(Message& message, std::uint64_t address) noexcept {
+  if constexpr (requires { message.partner; }) {
+    if (*message.partner != '\0') message.checksum = checksum_of(message);
+  }
+  message.address = address;
+  message.delivery_checksum = crc_of(message);
+}
+
+// No bit of the message has changed since its daemon sealed it.
+template <class Message>
+[[nodiscard]] bool has_its_crc(const Message& message) noexcept {
+  return crc_of(message) == message.delivery_checksum;
 }
 
 // The checksum of the rest of a report, and of the state of its tick. The counts of refused samples

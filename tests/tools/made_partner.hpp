@@ -19,6 +19,7 @@ class MadePartner {
   MadePartner(const DdsOptions& dds, const Cell& cell, const char* name = "right")
       : name_(name),
         revision_(cell.scene.revision),
+        reports_topic_(cell.topics.distances),
         participant_(dds),
         reports_(participant_.writer(TopicKind::kDistances, cell.topics.distances)),
         ticks_(participant_.writer(TopicKind::kPartnerTicks, cell.topics.partner_ticks,
@@ -31,7 +32,7 @@ class MadePartner {
     copy(name_, message.partner);
     message.daemon += 1;
     change(message);
-    seal(message);
+    seal(message, participant_.address(reports_topic_));
     dds_write(reports_, &message);
   }
   // Leads a tick, by a clock that is behind by this time. A daemon that leads as well goes on
@@ -74,6 +75,7 @@ class MadePartner {
 
   std::string name_;
   std::uint64_t revision_, cycle_ = 0;
+  std::string reports_topic_;
   Participant participant_;
   dds_entity_t reports_, ticks_, states_;
 };

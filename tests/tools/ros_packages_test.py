@@ -32,6 +32,7 @@ KEYS = {
     "libgmp-dev": "libgmp",
     "libhwy-dev": None,
     "liblz4-dev": "liblz4-dev",
+    "liblzma-dev": "liblzma-dev",
     "libmodbus-dev": "libmodbus-dev",
     "libmosquitto-dev": "mosquitto-dev",
     "libncurses-dev": "libncurses-dev",

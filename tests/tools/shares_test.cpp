@@ -14,6 +14,7 @@
 #include "config/cell/cell_file.hpp"
 #include "config/cell/share_topics.hpp"
 #include "monitor/client/shared_cell.hpp"
+#include "monitor/wire/report_checksum.hpp"
 #include "tests/monitor/tick/scara_cell.hpp"
 #include "tests/tools/shared_cells.hpp"
 
@@ -232,6 +233,7 @@ TEST_F(SharedCells, SayNothingBeforeTheNamesOfASceneAreKnown) {
   report->scene_revision = cell.scene.revision;
   for (report->cycle = 1; report->cycle < 30; ++report->cycle) {
     report->now_ns = report->publish_ns = dds_time();
+    seal(*report, boxes.address(share_topic(cell.topics.distances, "boxes")));
     ASSERT_EQ(dds_write(writer, &*report), DDS_RETCODE_OK);
     EXPECT_FALSE(whole.next(milliseconds(5)));
   }

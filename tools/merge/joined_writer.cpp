@@ -3,10 +3,12 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <utility>
 
 #include "monitor/publish/report_writer.hpp"
+#include "monitor/wire/report_checksum.hpp"
 
 namespace clearance::merge {
 namespace {
@@ -41,6 +43,7 @@ JoinedWriter::JoinedWriter(Participant& participant, const Cell& cell, std::uint
       topics_(cell.topics),
       on_health_(std::move(on_health)),
       lease_ns_(lease_ns(cell.scene.rate_hz)),
+      period_ns_(std::llround(1e9 / cell.scene.rate_hz)),
       distances_(participant.writer(TopicKind::kDistances, topics_.distances,
                                     {.lease_ns = lease_ns_, .user_data = to_user_data(identity_)})),
       catalogue_(participant.writer(TopicKind::kCatalogue, topics_.catalogue)),
@@ -56,6 +59,13 @@ bool JoinedWriter::put(TopicKind kind, dds_entity_t writer, const void* sample) 
   failed_ += is_taken ? 0 : 1;
   messages_.published(kind, sample);
   return is_taken;
+}
+
+template <class Message>
+void JoinedWriter::send(TopicKind kind, dds_entity_t writer, Message message) {
+  message.period_ns = period_ns_;
+  seal(message, participant_.address(topics_.*topic(kind).name));
+  put(kind, writer, &message);
 }
 
 // The strings belong to the share's sample. Cycles are those of this program.
@@ -95,15 +105,14 @@ void JoinedWriter::write(client::SharedCell& whole) {
   if (is_new) {
     revision_ = write_catalogue(*catalogue) ? catalogue->scene_revision : 0;
   }
-  clearance_msg_Distances report = *whole;
-  const std::int64_t oldest_ns = report.publish_ns;
-  put(TopicKind::kDistances, distances_, &report);
+  const std::int64_t oldest_ns = whole->publish_ns;
+  send(TopicKind::kDistances, distances_, *whole);
   ++reports_;
   not_whole_ += whole.is_whole() ? 0 : 1;
   if (delays_us_.merging.size() < kDelays) {
     const std::int64_t now = dds_time();
     delays_us_.merging.push_back(kUsPerNs * static_cast<double>(now - oldest_ns));
-    if (const std::int64_t pose_ns = report.oldest_pose_ns; pose_ns != 0) {
+    if (const std::int64_t pose_ns = whole->oldest_pose_ns; pose_ns != 0) {
       delays_us_.published.push_back(kUsPerNs * static_cast<double>(oldest_ns - pose_ns));
       delays_us_.joined.push_back(kUsPerNs * static_cast<double>(now - pose_ns));
     }
@@ -111,7 +120,7 @@ void JoinedWriter::write(client::SharedCell& whole) {
   if (const clearance_msg_Separation* const separation = whole.separation()) {
     if (separation_ == 0)
       separation_ = participant_.writer(TopicKind::kSeparation, topics_.separation);
-    put(TopicKind::kSeparation, separation_, separation);
+    send(TopicKind::kSeparation, separation_, *separation);
   }
   if (const clearance_msg_Gradients* const gradients = whole.gradients()) {
     if (gradients_ == 0) {
@@ -119,7 +128,7 @@ void JoinedWriter::write(client::SharedCell& whole) {
           participant_.writer(TopicKind::kGradients, topics_.gradients,
                               {.lease_ns = lease_ns_, .user_data = to_user_data(identity_)});
     }
-    put(TopicKind::kGradients, gradients_, gradients);
+    send(TopicKind::kGradients, gradients_, *gradients);
   }
   write_zones(whole, is_new);
   if (!others_.yields()) messages_.report_ended();

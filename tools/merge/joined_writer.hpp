@@ -40,6 +40,9 @@ class JoinedWriter {
  private:
   [[nodiscard]] bool write_catalogue(const clearance_msg_Catalogue& catalogue);
   void write_zones(const client::SharedCell& whole, bool again);
+  // Seals a message of the tick, and writes it.
+  template <class Message>
+  void send(TopicKind kind, dds_entity_t writer, Message message);
   // False: DDS has not taken it.
   bool put(TopicKind kind, dds_entity_t writer, const void* sample);
 
@@ -47,7 +50,7 @@ class JoinedWriter {
   DaemonIdentity identity_;
   Topics topics_;
   const OnHealth on_health_;
-  std::int64_t lease_ns_;
+  std::int64_t lease_ns_, period_ns_;
   dds_entity_t distances_, catalogue_, zones_, health_;
   dds_entity_t separation_ = 0, gradients_ = 0;  // 0: no share has had any yet
   RosMessages messages_;

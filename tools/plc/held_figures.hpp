@@ -23,8 +23,10 @@ enum class Cause : std::uint8_t {
   kNoNames = 6,
   kNoSeparation = 7,
   kOtherCell = 8,
+  kFaulty = 9,
+  kHeld = 10,
 };
-inline constexpr std::array<std::string_view, 9> kCauses = {
+inline constexpr std::array<std::string_view, 11> kCauses = {
     "the figures are good",
     "no report has come since the start",
     "no report has come in the last period",
@@ -34,6 +36,8 @@ inline constexpr std::array<std::string_view, 9> kCauses = {
     "the names of the cell's zones and robots have not come",
     "no message about scaling and stops has come in the last period",
     "the daemon watches another cell, by its name",
+    "a report is corrupt, comes again, or is for another topic, partition or domain",
+    "two reports were faulty within an hour; find out why, and start this program again",
 };
 
 // A message that the daemon writes in every tick.

@@ -17,14 +17,25 @@ using client::list;
 client::StreamOptions options(const Cell& cell) {
   const double waiting = 2e-9 * static_cast<double>(cell.plc.period_ns) * cell.scene.rate_hz;
   return {.old_after = std::chrono::nanoseconds(cell.plc.period_ns),
-          .depth = 64 + static_cast<std::int32_t>(std::ceil(waiting))};
+          .depth = 64 + static_cast<std::int32_t>(std::ceil(waiting)),
+          .period = std::chrono::nanoseconds(cell.plc.period_ns)};
 }
 
-Cause cause_of(const ReportCheck& check, std::int64_t publish_ns) {
-  if (check.other_daemon) return Cause::kOtherDaemon;
-  if (check.clocks_disagree) return Cause::kClocksDisagree;
-  const bool is_replay = publish_ns == 0;
-  return check.is_old || is_replay ? Cause::kOld : Cause::kNone;
+Cause cause_of(ReportError error) {
+  switch (error) {
+    case ReportError::kOld:
+      return Cause::kOld;
+    case ReportError::kClocksDisagree:
+      return Cause::kClocksDisagree;
+    case ReportError::kOtherSource:
+      return Cause::kOtherDaemon;
+    case ReportError::kRepeated:
+    case ReportError::kCorrupt:
+    case ReportError::kOtherAddress:
+      return Cause::kFaulty;
+    default:
+      return Cause::kNone;  // silence, which HeldFigures notices
+  }
 }
 
 // A margin to objects that are absent limits nothing, and one that is not known is the least.
@@ -115,7 +126,7 @@ template <class Message>
 void ReportFigures::take(client::Stream<Message>& stream, MessageKind kind, std::int64_t now_ns) {
   const std::int64_t period_ns = settings_.period_ns;
   while (stream.next()) {
-    Cause cause = cause_of(stream.check(), stream->publish_ns);
+    Cause cause = cause_of(stream.check().error);
     if (cause == Cause::kNone) cause = names_of(stream->scene_revision);
     if (cause != Cause::kNone) {
       if (kind == MessageKind::kDistances) held_.fail(cause, now_ns + period_ns);
@@ -125,6 +136,9 @@ void ReportFigures::take(client::Stream<Message>& stream, MessageKind kind, std:
     const std::int64_t age_ns = std::max<std::int64_t>(0, stream.check().age_ns);
     held_.add(kind, values_, now_ns + period_ns - age_ns);
   }
+  // What is not handed out shows here only.
+  const Cause cause = stream.is_held() ? Cause::kHeld : cause_of(stream.reason());
+  if (cause == Cause::kHeld || cause == Cause::kFaulty) held_.fail(cause, now_ns);
 }
 
 void ReportFigures::update(std::int64_t now_ns) {

@@ -17,6 +17,7 @@
 #include "monitor/recording/input_log.hpp"
 #include "monitor/recording/reader.hpp"
 #include "monitor/wire/cdr.hpp"
+#include "monitor/wire/report_checksum.hpp"
 #include "tools/replay/arguments.hpp"
 #include "tools/shared/progress_bar.hpp"
 
@@ -68,7 +69,8 @@ struct Schedule {
 // Decodes and writes one message, under its original source stamp or under that of the schedule.
 class Sender {
  public:
-  explicit Sender(bool restamp) : restamp_(restamp) {}
+  Sender(const Participant& participant, bool restamp)
+      : participant_(participant), restamp_(restamp) {}
   void begin(const Schedule& schedule) { schedule_ = schedule; }
 
   // False: the bytes are not what the channel says.
@@ -112,6 +114,9 @@ class Sender {
                   std::is_same_v<T, clearance_msg_JointStates>) {
       if (restamp_) stamp_ns = moved_to_now(message, *sample);
     }
+    // What was recorded for one domain goes out in another one. Its time of publishing stays.
+    if constexpr (requires { sample->delivery_checksum; })
+      seal(*sample, participant_.address(message.channel->topic));
     check_dds(dds_write_ts(writer, &*sample, std::max<std::int64_t>(stamp_ns, 0)),
               fmt::format("writing to {}", message.channel->topic));
     return true;
@@ -139,6 +144,7 @@ class Sender {
     return schedule_.of(message.publish_ns);
   }
 
+  const Participant& participant_;
   bool restamp_;
   Schedule schedule_;
   CdrDecoder decoder_;
@@ -173,7 +179,7 @@ class Publishing {
         stop_(stop),
         participant_(dds),
         writers_(participant_),
-        sender_(arguments.restamp) {}
+        sender_(participant_, arguments.restamp) {}
 
   int run();
 

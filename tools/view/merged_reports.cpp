@@ -2,6 +2,8 @@
 
 #include <fmt/format.h>
 
+#include "monitor/wire/report_checksum.hpp"
+
 namespace clearance::view {
 namespace {
 
@@ -23,7 +25,7 @@ bool MergedReports::take(const clearance_msg_Distances& report, std::int64_t ste
     return true;
   }
   partner_ns_ = steady_ns;
-  if (!merge_.take(report, steady_ns)) return false;
+  if (!merge_.take(report, steady_ns, has_its_crc(report))) return false;
   const client::PartnerCheck& check = merge_.check();
   have_met_ |= check.state != kAlone;
   const bool is_lost_here = check.state == kMissing && is_recent(lost_ns_, steady_ns, kToldForNs);

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "monitor/participant/participant.hpp"
+#include "monitor/wire/report_checksum.hpp"
 #include "tests/shared/loopback.hpp"
 
 namespace clearance {
@@ -33,11 +34,19 @@ class Daemon {
   [[nodiscard]] bool is_heard() const { return test::matched_readers(distances_) > 0; }
 
   void report(std::uint64_t cycle, std::int64_t publish_ns = dds_time(), std::uint64_t daemon = 7) {
+    write(cycle, publish_ns, daemon, [](clearance_msg_Distances&) {});
+  }
+  // Sent with a change behind the CRC.
+  template <class Change>
+  void write(std::uint64_t cycle, std::int64_t publish_ns, std::uint64_t daemon,
+             const Change& change) {
     clearance_msg_Distances report{};
     report.daemon = daemon;
     report.cycle = cycle;
     report.publish_ns = publish_ns;
     report.scene_revision = 5;
+    seal(report, participant_.address(Topics{}.distances));
+    change(report);
     check_dds(dds_write(distances_, &report), "writing");
   }
 
@@ -103,6 +112,58 @@ TEST(Client, GetsReportsInOrderEachWithItsCheck) {
   EXPECT_TRUE(reports.check().other_daemon);
   EXPECT_FALSE(reports.next(milliseconds(1)));
   EXPECT_EQ((*reports).cycle, 1u) << "the last one stays";
+}
+
+TEST(Client, HandsOutNoFaultyReportAndIsHeldByTwoUntilAcknowledge) {
+  const DdsOptions dds = test::own_dds();
+  Daemon daemon(dds);
+  client::Connection connection(dds);
+  client::Reports reports(connection, {.period = std::chrono::hours(1)});
+  ASSERT_TRUE(eventually([&] { return daemon.is_heard(); }));
+  EXPECT_EQ(reports.reason(), ReportError::kNothingHeard);
+  daemon.report(1);
+  ASSERT_TRUE(reports.next(kPatience));
+  EXPECT_FALSE(reports.fail_safe());
+  const auto fault = [&](ReportError expected, const auto& change) {
+    daemon.write(2, dds_time(), 7, change);
+    EXPECT_TRUE(eventually([&] { return !reports.next() && reports.reason() == expected; }));
+    EXPECT_EQ(reports->cycle, 1u);
+  };
+  fault(ReportError::kCorrupt, [](auto& report) { report.lower_all = 1.0; });
+  EXPECT_FALSE(reports.is_held());
+  reports.acknowledge();
+  fault(ReportError::kOtherAddress, [](auto& report) { seal(report, 1); });
+  fault(ReportError::kCorrupt, [](auto& report) { report.delivery_checksum = 0; });
+  EXPECT_TRUE(reports.is_held());
+  daemon.report(3);
+  ASSERT_TRUE(reports.next(kPatience));
+  EXPECT_EQ(reports.check().error, ReportError::kGood);
+  EXPECT_EQ(reports.reason(), ReportError::kCorrupt) << "it is held";
+  reports.acknowledge();
+  EXPECT_EQ(reports.reason(), ReportError::kNothingHeard);
+  daemon.report(4);
+  ASSERT_TRUE(reports.next(kPatience));
+  EXPECT_FALSE(reports.fail_safe());
+  daemon.report(4);
+  EXPECT_TRUE(
+      eventually([&] { return !reports.next() && reports.reason() == ReportError::kRepeated; }));
+}
+
+// The daemon of the test states no period, so the limit of old reports counts.
+TEST(Client, IsFailSafeWhenNoReportComesInTime) {
+  const DdsOptions dds = test::own_dds();
+  Daemon daemon(dds);
+  client::Connection connection(dds);
+  client::Reports reports(connection, {.old_after = std::chrono::milliseconds(500)});
+  ASSERT_TRUE(eventually([&] { return daemon.is_heard(); }));
+  std::uint64_t cycle = 0;
+  ASSERT_TRUE(eventually([&] {
+    daemon.report(++cycle);
+    return reports.newest(milliseconds(10)) && !reports.fail_safe();
+  }));
+  EXPECT_TRUE(eventually([&] { return reports.fail_safe(); }));
+  EXPECT_EQ(reports.reason(), ReportError::kSilent);
+  EXPECT_FALSE(reports.is_held());
 }
 
 TEST(Client, MayAskForTheNewestReportOnly) {

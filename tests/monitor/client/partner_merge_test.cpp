@@ -27,7 +27,7 @@ clearance_msg_Distances report(const char* partner, std::uint64_t cycle, std::ui
   message.lineage = lineage;
   message.now_ns = kStart + static_cast<std::int64_t>(cycle) * kPeriod;
   message.lower_all = lower;
-  message.checksum = checksum_of(message);
+  seal(message, 0);
   return message;
 }
 
@@ -35,7 +35,7 @@ class Merge : public testing::Test {
  protected:
   bool take(const clearance_msg_Distances& message) {
     heard_ns += kPeriod / 2;
-    const bool is_next = merge.take(message, heard_ns);
+    const bool is_next = merge.take(message, heard_ns, has_its_crc(message));
     if (is_next) cycles.push_back(message.cycle);
     return is_next;
   }
@@ -61,7 +61,7 @@ TEST_F(Merge, HandsOutEachCycleOnceAndTellsThatBothAgree) {
 
 clearance_msg_Distances of_scene(std::uint64_t revision, clearance_msg_Distances message) {
   message.scene_revision = revision;
-  message.checksum = checksum_of(message);
+  seal(message, 0);
   return message;
 }
 
@@ -109,6 +109,7 @@ TEST_F(Merge, ComparesMessagesOfChangesByTheWholeReports) {
     clearance_msg_Distances message = report(partner, cycle, 1, lower);
     message.changes_since = cycle - 1;
     message.state_checksum = whole;
+    seal(message, 0);
     return message;
   };
   take(changes("left", 2, 0.5, 77));
@@ -150,13 +151,13 @@ TEST_F(Merge, HandsOutWhatComesAfterTheTimeOfBothWasSetBack) {
   take(report("left", 100));
   clearance_msg_Distances later = report("left", 1, 2);
   later.now_ns -= 7'200'000'000'000;
-  later.checksum = checksum_of(later);
+  seal(later, 0);
   EXPECT_FALSE(take(later)) << "for a moment, it may be of a former run";
   heard_ns += 1'000'000'000;
   EXPECT_TRUE(take(later));
   later.cycle = 2;
   later.now_ns += kPeriod;
-  later.checksum = checksum_of(later);
+  seal(later, 0);
   EXPECT_TRUE(take(later));
 }
 
@@ -170,6 +171,7 @@ TEST_F(Merge, TellsOtherBitsOfTheSameInputsFromOtherInputs) {
   EXPECT_EQ(state(), PartnerState::kOtherInputs);
   auto message = report("right", 3);
   message.state_checksum ^= 1;
+  seal(message, 0);
   take(message);
   take(report("left", 4));
   EXPECT_EQ(state(), PartnerState::kDifferent) << "of what the message does not hold";
@@ -192,13 +194,13 @@ TEST_F(Merge, APartnerThatCountsLowerGoesOnWhereTheOtherFellSilent) {
     take(report("left", cycle));
     auto apart = report("right", cycle, 7);
     apart.cycle -= cycle > 3 ? 3 : 0;
-    apart.checksum = checksum_of(apart);
+    seal(apart, 0);
     EXPECT_FALSE(take(apart)) << cycle;
   }
   for (const std::uint64_t later : {1, 2}) {
     auto apart = report("right", 10 + later, 7);
     apart.cycle -= 3;
-    apart.checksum = checksum_of(apart);
+    seal(apart, 0);
     EXPECT_EQ(take(apart), later == 2) << "the other one may only be late";
   }
 }
@@ -211,7 +213,7 @@ TEST_F(Merge, AReportWithAWrongCycleOrTimeDoesNotKeepOutThoseAfterIt) {
   }
   auto leaps = report("left", 6);
   leaps.cycle |= std::uint64_t{1} << 40;
-  leaps.checksum = checksum_of(leaps);
+  seal(leaps, 0);
   EXPECT_TRUE(take(leaps)) << "nothing shows that it is wrong";
   take(report("right", 6));
   take(report("left", 7));
@@ -220,7 +222,7 @@ TEST_F(Merge, AReportWithAWrongCycleOrTimeDoesNotKeepOutThoseAfterIt) {
   take(report("right", 8));
   auto of_tomorrow = report("right", 9);
   of_tomorrow.now_ns += std::int64_t{1} << 50;
-  of_tomorrow.checksum = checksum_of(of_tomorrow);
+  seal(of_tomorrow, 0);
   EXPECT_TRUE(take(of_tomorrow));
   EXPECT_FALSE(take(report("left", 9)));
   EXPECT_TRUE(take(report("left", 10)));
@@ -228,7 +230,7 @@ TEST_F(Merge, AReportWithAWrongCycleOrTimeDoesNotKeepOutThoseAfterIt) {
   EXPECT_FALSE(take(report("right", 10)));
   auto counts_on = report("right", 10);
   counts_on.cycle = 99;
-  counts_on.checksum = checksum_of(counts_on);
+  seal(counts_on, 0);
   EXPECT_FALSE(take(counts_on)) << "the report of that time was handed out";
   EXPECT_TRUE(take(report("left", 11)));
   EXPECT_EQ(state(), PartnerState::kDifferent);
@@ -293,7 +295,7 @@ Sample<clearance_msg_Distances> full_report(Random& random) {
   message.now_ns = kStart;
   message.publish_ns = kStart + 1000;
   message.state_checksum = random.next();
-  seal(message);
+  seal(message, 0);
   return sample;
 }
 
@@ -321,8 +323,8 @@ TEST_F(Merge, FindsEveryFlippedBitOfAMessageAtOnce) {
     PartnerMerge fresh;
     const bool is_of_one = *came->partner == '\0' && came->checksum == 0;
     EXPECT_FALSE(is_of_one) << "bit " << bit;
-    EXPECT_FALSE(fresh.take(*came, kStart)) << "bit " << bit;
-    EXPECT_TRUE(fresh.take(*sent, kStart));
+    EXPECT_FALSE(fresh.take(*came, kStart, has_its_crc(*came))) << "bit " << bit;
+    EXPECT_TRUE(fresh.take(*sent, kStart, has_its_crc(*sent)));
     EXPECT_EQ(fresh.check().state, PartnerState::kCorrupt) << "bit " << bit;
     ++corrupt;
   }
@@ -351,9 +353,9 @@ TEST_F(Merge, FindsEveryBitThatFlippedBeforeTheChecksumByTheReportOfThePartner) 
     bytes[bit / 8] ^= static_cast<std::byte>(1 << bit % 8);
     Sample<clearance_msg_Distances> flipped, rest, right, next;
     if (!decoder.decode(bytes, flipped) || !decoder.decode(bytes, rest)) continue;
-    seal(*flipped);
+    seal(*flipped, 0);
     as_of(*sent, *rest);
-    seal(*rest);
+    seal(*rest, 0);
     const std::vector<std::byte> unflipped = [&] {
       const auto all = again.encode(*sent);
       return std::vector<std::byte>(all.begin(), all.end());
@@ -365,17 +367,17 @@ TEST_F(Merge, FindsEveryBitThatFlippedBeforeTheChecksumByTheReportOfThePartner) 
     ASSERT_TRUE(decoder.decode(unflipped, right));
     std::strcpy(right->partner, "right");
     right->daemon = sent->daemon + 1;
-    seal(*right);
+    seal(*right, 0);
     ASSERT_TRUE(decoder.decode(unflipped, next));
     ++next->cycle;
     next->now_ns += kPeriod;
-    seal(*next);
+    seal(*next, 0);
     PartnerMerge fresh;
     const bool flipped_first = random.chance(0.5);
-    if (flipped_first) static_cast<void>(fresh.take(*flipped, kStart));
-    static_cast<void>(fresh.take(*right, kStart));
-    if (!flipped_first) static_cast<void>(fresh.take(*flipped, kStart));
-    static_cast<void>(fresh.take(*next, kStart));
+    if (flipped_first) static_cast<void>(fresh.take(*flipped, kStart, has_its_crc(*flipped)));
+    static_cast<void>(fresh.take(*right, kStart, has_its_crc(*right)));
+    if (!flipped_first) static_cast<void>(fresh.take(*flipped, kStart, has_its_crc(*flipped)));
+    static_cast<void>(fresh.take(*next, kStart, has_its_crc(*next)));
     const PartnerState told = fresh.check().state;
     EXPECT_TRUE(told == PartnerState::kDifferent || told == PartnerState::kOtherInputs ||
                 told == PartnerState::kMissing)

@@ -74,7 +74,7 @@ class ShareDaemon {
     message.scene_revision = revision_;
     message.pairs_total = pairs_;
     message.state_checksum = state_;
-    if (!partner_.empty()) message.checksum = checksum_of(message);
+    seal(message, participant_.address(topics_.distances));
     check_dds(dds_write(distances_, &message), "writing");
   }
   void zones(std::uint64_t cycle, bool active) {

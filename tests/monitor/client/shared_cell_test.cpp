@@ -228,6 +228,10 @@ TEST_F(ASharedCell, HasAShareUnknownByNameThatDividesTheCellOtherwise) {
   EXPECT_EQ(whole->what_is_missing(), "the share 'left' is divided otherwise");
   left.emplace(dds, cell, "left", 5);
   left->zones(cycle, false);
+  ASSERT_TRUE(report_until(*left, [&] { return whole->shares()[0].state == ShareState::kHeld; }));
+  EXPECT_EQ(whole->what_is_missing(), "the share 'left' is held") << "another daemon once more";
+  EXPECT_EQ(whole->reason(), ReportError::kOtherSource);
+  whole->acknowledge();
   EXPECT_TRUE(report_until(*left, [&] { return whole->is_whole() && !is_active(kWide); }))
       << whole->what_is_missing();
   left->set_pairs(2);

@@ -34,7 +34,7 @@ class TwoWriters : public testing::Test {
       message.now_ns = static_cast<std::int64_t>(cycle) * 1'000'000;
       message.publish_ns = dds_time();
       message.lower_all = lower;
-      seal(message);
+      seal(message, participant.address(Topics{}.distances));
       ASSERT_EQ(dds_write(distances, &message), DDS_RETCODE_OK);
     }
   };

@@ -115,7 +115,7 @@ TEST_F(APartner, ThatHasAnotherSceneLeavesNoZonesAndNoCatalogue) {
   report.scene_revision = 6;
   ASSERT_TRUE(eventually([&] {
     ++report.cycle;
-    seal(report);
+    seal(report, 0);
     check_dds(dds_write(distances, &report), "writing");
     return port.partner_revision() == 6;
   }));
@@ -172,7 +172,7 @@ TEST_F(APartner, ThatDisagreesKeepsAZoneActiveThatTheOtherOneClears) {
   ASSERT_TRUE(eventually([&] {
     tick(0.3, kFollowing);
     ++report.cycle;
-    seal(report);
+    seal(report, 0);
     check_dds(dds_write(distances, &report), "writing");
     return port.disagrees();
   }));
@@ -185,7 +185,7 @@ TEST_F(APartner, ThatDisagreesKeepsAZoneActiveThatTheOtherOneClears) {
   client::Zones seen(connection);
   EXPECT_TRUE(eventually([&] {
     ++report.cycle;
-    seal(report);
+    seal(report, 0);
     check_dds(dds_write(distances, &report), "writing");
     tick(0.3, kFollowing);
     seen.update();
@@ -195,7 +195,6 @@ TEST_F(APartner, ThatDisagreesKeepsAZoneActiveThatTheOtherOneClears) {
   port.stop();
 }
 
-// Flips bits that `checksum` covers, and bits that `delivery_checksum` covers.
 TEST_F(APartner, WhoseReportHasAFlippedBitIsCountedAndItsSceneIsNotTaken) {
   const auto logged = std::make_shared<test::Logged>();
   const test::LoggedTo to{logged};
@@ -208,7 +207,7 @@ TEST_F(APartner, WhoseReportHasAFlippedBitIsCountedAndItsSceneIsNotTaken) {
     report.scene_revision = cell.scene.revision;
     report.state_checksum = 7;
     ++report.cycle;
-    seal(report);
+    seal(report, 0);
     flip();
     check_dds(dds_write(distances, &report), "writing");
   };

@@ -137,6 +137,11 @@ json distances(Cdr& cdr) {
   out["active_zones"] = json::array();
   for (auto n = take<std::uint32_t>(cdr); n > 0; --n)
     out["active_zones"].push_back(take<std::uint32_t>(cdr));
+  out["period_ns"] = take<std::int64_t>(cdr);
+  out["address"] = take<std::uint64_t>(cdr);
+  out["source_contents"] = json::array();
+  for (auto n = take<std::uint32_t>(cdr); n > 0; --n)
+    out["source_contents"].push_back(take<std::uint64_t>(cdr));
   return out;
 }
 

@@ -337,6 +337,8 @@ class Report:
     @property
     def missed(self) -> int: ...
     @property
+    def error(self) -> ReportError: ...
+    @property
     def other_daemon(self) -> bool: ...
     @property
     def partner(self) -> str: ...
@@ -385,6 +387,12 @@ class Report:
     @property
     def delivery_checksum(self) -> int: ...
     @property
+    def period_ns(self) -> int: ...
+    @property
+    def address(self) -> int: ...
+    @property
+    def source_contents(self) -> NDArray[np.uint64]: ...
+    @property
     def changes_since(self) -> int: ...
 
 class _Live:
@@ -399,7 +407,24 @@ class _Live:
         traceback: Optional[TracebackType],
     ) -> None: ...
 
+class ReportError(IntEnum):
+    GOOD = 0
+    NOTHING_HEARD = 1
+    SILENT = 2
+    OLD = 3
+    CLOCKS_DISAGREE = 4
+    OTHER_SOURCE = 5
+    REPEATED = 6
+    CORRUPT = 7
+    OTHER_ADDRESS = 8
+    SHARE = 9
+
 class _LiveReports(_Live):
+    @property
+    def fail_safe(self) -> bool: ...
+    @property
+    def reason(self) -> ReportError: ...
+    def acknowledge(self) -> None: ...
     def next(self, timeout: Optional[float] = ...) -> Optional[Report]: ...
     def newest(self, timeout: Optional[float] = ...) -> Optional[Report]: ...
     def __iter__(self) -> Iterator[Report]: ...
@@ -418,7 +443,11 @@ class Reports(_LiveReports):
         depth: int = ...,
         gradients: bool = ...,
         separation: bool = ...,
+        period_s: Optional[float] = ...,
+        error_interval_s: float = ...,
     ) -> None: ...
+    @property
+    def is_held(self) -> bool: ...
     @property
     def daemons(self) -> int: ...
     @property
@@ -432,6 +461,7 @@ class ShareState(IntEnum):
     LATE = 2
     OF_ANOTHER_REVISION = 3
     DIVIDED_OTHERWISE = 4
+    HELD = 5
 
 class SharedCell(_LiveReports):
     def __init__(

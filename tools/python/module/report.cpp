@@ -9,6 +9,7 @@
 #include <utility>
 #include <vector>
 
+#include "tools/python/module/arrays.hpp"
 #include "tools/python/module/fields.hpp"
 #include "tools/python/module/tick_messages.hpp"
 
@@ -204,6 +205,9 @@ void add_figures(py::class_<Report>& type) {
           "missed", [](const Report& r) { return r.check.missed; },
           "Reports between the one before and this one.")
       .def_property_readonly(
+          "error", [](const Report& r) { return error_of(r.check.error); },
+          "Why it must not be relied on (ReportError); GOOD: it is good.")
+      .def_property_readonly(
           "other_daemon", [](const Report& r) { return r.check.other_daemon; },
           "The report before is of another run of a daemon.")
       .def_property_readonly(
@@ -229,7 +233,20 @@ void add_figures(py::class_<Report>& type) {
 
 }  // namespace
 
+// The type is never destroyed: the interpreter may be gone by then.
+py::object& error_enum() {
+  static auto* const type = new py::object();
+  return *type;
+}
+
+py::object error_of(ReportError error) { return error_enum()(static_cast<int>(error)); }
+
 void add_report_class(py::module_& module) {
+  std::vector<Enumerator> errors;
+  for (int value = 0; value <= static_cast<int>(ReportError::kShare); ++value)
+    errors.push_back({constant_name(client::name(static_cast<ReportError>(value))), value});
+  error_enum() = add_enum(module, "ReportError", errors,
+                          "Why a report must not be relied on, or no report may (END_TO_END.md).");
   py::class_<Report> type(module, "Report", R"(The distances of one tick. It does not change.)");
   add_fields(type);
   add_records(type);

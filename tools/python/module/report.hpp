@@ -68,4 +68,28 @@ struct Report {
 
 void add_report_class(py::module_& module);
 
+// The Python value of ReportError.
+[[nodiscard]] py::object error_of(ReportError error);
+
+// Defines what says whether reports may be relied on. `with` calls a function with the stream of an
+// object, which no other thread uses meanwhile.
+template <class Class, class With>
+void add_judgement(Class& type, const With& with) {
+  using T = typename Class::type;
+  type.def_property_readonly(
+          "fail_safe",
+          [with](T& self) { return with(self, [](auto& stream) { return stream.fail_safe(); }); },
+          "No report may be relied on now, as `reason` says; time counts since the last good one.")
+      .def_property_readonly(
+          "reason",
+          [with](T& self) {
+            return error_of(with(self, [](auto& stream) { return stream.reason(); }));
+          },
+          "Why (ReportError); GOOD: the last good report counts.")
+      .def(
+          "acknowledge",
+          [with](T& self) { with(self, [](auto& stream) { stream.acknowledge(); }); },
+          "Ends a hold: a person has looked at the faults. The next good report counts again.");
+}
+
 }  // namespace clearance::python

@@ -45,9 +45,10 @@ std::shared_ptr<const Names> names_of(ReportParts& parts, std::uint64_t revision
 class Reports : public Live<ReportParts> {
  public:
   Reports(const SharedConnection& connection, double old_after_s, std::int32_t depth,
-          bool gradients, bool separation)
-      : Live("Reports", connection_of(connection), options(old_after_s, depth), gradients,
-             separation) {}
+          bool gradients, bool separation, const std::optional<double>& period_s,
+          double error_interval_s)
+      : Live("Reports", connection_of(connection),
+             options(old_after_s, depth, period_s, error_interval_s), gradients, separation) {}
 
   // None when the time is over.
   py::object wait(bool newest, const std::optional<double>& timeout_s) {
@@ -92,12 +93,15 @@ class Reports : public Live<ReportParts> {
   }
 
  private:
-  static client::StreamOptions options(double old_after_s, std::int32_t depth) {
-    if (!(old_after_s > 0.0 && old_after_s < 1e6))
-      throw py::value_error("old_after_s: expected seconds above 0, at most 1e6");
+  static client::StreamOptions options(double old_after_s, std::int32_t depth,
+                                       const std::optional<double>& period_s,
+                                       double error_interval_s) {
+    client::StreamOptions options{.old_after = seconds_of(old_after_s, "old_after_s"),
+                                  .depth = depth};
     if (depth < 1 || depth > 100'000) throw py::value_error("depth: expected 1 to 100000 messages");
-    return {.old_after = std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * old_after_s)),
-            .depth = depth};
+    if (period_s) options.period = seconds_of(*period_s, "period_s");
+    options.error_interval = seconds_of(error_interval_s, "error_interval_s");
+    return options;
   }
 };
 
@@ -116,12 +120,16 @@ Iterating waits for each in order, without an end. One thread uses it at a time.
 interpreter's lock, and Ctrl-C ends them.)");
   reports
       .def(
-          py::init<const SharedConnection&, double, std::int32_t, bool, bool>(),
+          py::init<const SharedConnection&, double, std::int32_t, bool, bool,
+                   const std::optional<double>&, double>(),
           py::arg("connection") = py::none(), py::kw_only(), py::arg("old_after_s") = 0.1,
           py::arg("depth") = 64, py::arg("gradients") = false, py::arg("separation") = false,
+          py::arg("period_s") = py::none(), py::arg("error_interval_s") = 3600.0,
           R"(connection: None: one without arguments, on this machine's loopback. old_after_s: a report that
 is older is not fresh, s. depth: messages that may wait. gradients, separation: reports have these of their tick,
-where the cell asks for them. Raises ValueError and DdsError.)")
+where the cell asks for them. period_s: a good report counts so long after it was published, s; None: twice the period
+that it states. error_interval_s: two faulty reports within it hold `fail_safe` until acknowledge(), s.
+Raises ValueError and DdsError.)")
       .def(
           "next",
           [](Reports& self, const std::optional<double>& timeout) {
@@ -158,6 +166,13 @@ since_cycle, cycle, now_ns. Empty while none has come.)")
 
 Keys are the fields of Health in idl/FIELDS.md, times in us and ns. rejected, inputs, joints, sources,
 notes, shares and witnesses are lists of dicts.)");
+  add_judgement(reports, [](Reports& self, const auto& act) {
+    const Reports::Use parts = self.use();
+    return act(parts->stream);
+  });
+  reports.def_property_readonly(
+      "is_held", [](Reports& self) { return self.use()->stream.is_held(); },
+      "Two reports were faulty within error_interval_s: `fail_safe` stays until acknowledge().");
   add_closing(reports);
 }
 

@@ -87,11 +87,6 @@ class SharedCell : public Live<SharedParts> {
   }
 
  private:
-  static std::chrono::nanoseconds seconds(double value, const char* name) {
-    if (!(value > 0.0 && value < 1e6))
-      throw py::value_error(std::string(name) + ": expected seconds above 0, at most 1e6");
-    return std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * value));
-  }
   static client::SharedCellOptions options(const std::optional<double>& late_after_s,
                                            double old_after_s, bool gradients,
                                            std::vector<std::string> names) {
@@ -102,9 +97,9 @@ class SharedCell : public Live<SharedParts> {
     if (!differ || names.size() > kMaxShares || !std::ranges::all_of(names, fits))
       throw py::value_error("names: expected at most 64 different names of 1 to 32 bytes");
     std::optional<std::chrono::nanoseconds> late_after;
-    if (late_after_s) late_after = seconds(*late_after_s, "late_after_s");
+    if (late_after_s) late_after = seconds_of(*late_after_s, "late_after_s");
     return {.late_after = late_after,
-            .old_after = seconds(old_after_s, "old_after_s"),
+            .old_after = seconds_of(old_after_s, "old_after_s"),
             .gradients = gradients,
             .names = std::move(names)};
   }
@@ -114,7 +109,7 @@ class SharedCell : public Live<SharedParts> {
 
 void add_shared_cell(py::module_& module) {
   std::vector<Enumerator> states;
-  for (int value = 0; value <= static_cast<int>(ShareState::kOtherDivision); ++value)
+  for (int value = 0; value <= static_cast<int>(ShareState::kHeld); ++value)
     states.push_back({constant_name(client::name(static_cast<ShareState>(value))), value});
   state_enum() = add_enum(module, "ShareState", states,
                           "Whether the reports of a share are used, and why not (SHARES.md).");
@@ -178,6 +173,10 @@ Fields as Reports.zones. A zone with pairs of a share that is not whole is activ
                              R"(The health of all daemons: a dict; None before the first report.
 
 Keys as Reports.health: counts are sums, times and ages the largest. shares has the state of each.)");
+  add_judgement(shared, [](SharedCell& self, const auto& act) {
+    const SharedCell::Use parts = self.use();
+    return act(parts->whole);
+  });
   add_closing(shared);
 }
 

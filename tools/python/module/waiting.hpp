@@ -60,6 +60,13 @@ inline std::optional<double> timeout_of(const std::optional<double>& seconds) {
   return std::min(*seconds, 1e9);
 }
 
+// An argument in seconds as nanoseconds. Throws ValueError.
+inline std::chrono::nanoseconds seconds_of(double value, const char* name) {
+  if (!(value > 0.0 && value < 1e6))
+    throw py::value_error(std::string(name) + ": expected seconds above 0, at most 1e6");
+  return std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * value));
+}
+
 // Calls `attempt` with the time that it may wait, until it returns true or the time is over. Must
 // be called without the interpreter's lock.
 template <class Attempt>
