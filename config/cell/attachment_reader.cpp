@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "config/scene/chain_rounding.hpp"
+#include "config/scene/people.hpp"
 #include "config/scene/rigid_root.hpp"
 #include "config/text/spelling.hpp"
 #include "config/yaml/map_reader.hpp"
@@ -278,6 +279,9 @@ void AttachmentReader::leave_out_touching() {
       if (found != named.end()) {
         for (const std::uint32_t other : found->second) {
           if (other == object) continue;
+          const auto why =
+              contact_with_people(list_.objects, robots_.robots, {}, {}, object, other);
+          if (why) diagnostics_.add(item, *why);
           list_.left_out.push_back(pair_key(object, other));
           list_.touching.push_back(pair_key(object, other));
         }

@@ -179,8 +179,8 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   if (zones_node != nullptr)
     cell.scene.zones = read_zones(*zones_node, list, group_index, quantities, pairs);
   if (contacts_node != nullptr) {
-    cell.scene.contacts =
-        read_contacts(*contacts_node, list, cell.scene.zones, group_index, quantities, pairs);
+    cell.scene.contacts = read_contacts(*contacts_node, list, robots.robots, cell.scene.zones,
+                                        group_index, quantities, pairs);
   }
   settle_stops(zones_node, robots, list, pairs, cell.scene.zones);
   publish_open(robots, list, pairs, cell.scene.zones);

@@ -18,9 +18,11 @@ constexpr std::int64_t kMost = std::numeric_limits<std::int64_t>::max() - 1;
 
 class ContactReader {
  public:
-  ContactReader(const ObjectList& objects, const std::vector<Zone>& zones, GroupIndex& group_index,
+  ContactReader(const ObjectList& objects, const std::vector<Robot>& robots,
+                const std::vector<Zone>& zones, GroupIndex& group_index,
                 const Quantities& quantities, PairList& pairs)
       : objects_(objects),
+        robots_(robots),
         zones_(zones),
         group_index_(group_index),
         quantities_(quantities),
@@ -39,6 +41,7 @@ class ContactReader {
   [[nodiscard]] std::string names_of(std::uint32_t pair) const;
 
   const ObjectList& objects_;
+  const std::vector<Robot>& robots_;
   const std::vector<Zone>& zones_;
   GroupIndex& group_index_;
   const Quantities& quantities_;
@@ -80,7 +83,7 @@ void ContactReader::refuse_people(const YamlNode& node, const AllowedContact& co
   for (const std::uint32_t pair : contact.pairs) {
     const ObjectPair& of = pairs_.pairs[pair];
     const auto why =
-        contact_with_people(objects_.objects, pairs_.pairs, zones_, of.first, of.second);
+        contact_with_people(objects_.objects, robots_, pairs_.pairs, zones_, of.first, of.second);
     if (why) return diagnostics_.add(node, *why);
   }
 }
@@ -167,10 +170,11 @@ ContactEnd read_contact_end(const YamlNode& node, const Quantities& quantities) 
 }
 
 std::vector<AllowedContact> read_contacts(const YamlNode& node, const ObjectList& objects,
+                                          const std::vector<Robot>& robots,
                                           const std::vector<Zone>& zones, GroupIndex& group_index,
                                           const Quantities& quantities, PairList& pairs) {
   std::vector<AllowedContact> contacts;
-  ContactReader reader(objects, zones, group_index, quantities, pairs);
+  ContactReader reader(objects, robots, zones, group_index, quantities, pairs);
   for (const YamlNode& item : read_list(node, "contacts", quantities.diagnostics()))
     contacts.push_back(reader.read(item));
   if (contacts.size() > kMaxContacts) {

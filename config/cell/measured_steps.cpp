@@ -7,6 +7,7 @@
 #include <set>
 #include <utility>
 
+#include "config/scene/absent_robots.hpp"
 #include "config/text/spelling.hpp"
 
 namespace clearance {
@@ -56,10 +57,7 @@ std::vector<std::size_t> chain_to(const Robot& robot, std::size_t link) {
 // Returns the mass of what stands on a robot, kg. A tool that is absent has none.
 double mass_of(const Robot& robot, const ObjectList& list) {
   if (robot.is_attached) return list.objects[robot.links.front().object].mass;
-  const bool is_absent = std::ranges::any_of(robot.links, [&](const RobotLink& link) {
-    return link.object != RobotLink::kNoObject && list.objects[link.object].absent;
-  });
-  return is_absent ? 0.0 : robot.mass;
+  return is_absent(robot, list.objects) ? 0.0 : robot.mass;
 }
 
 // The mass that a robot carries, kg; nothing: something has none stated.

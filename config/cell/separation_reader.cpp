@@ -131,7 +131,7 @@ Separation SeparationReader::read() {
 }  // namespace
 
 Separation read_separation(const YamlNode& node, const Between& between, const Zone& zone,
-                           const std::vector<ObjectPair>& pairs, const ObjectList& objects,
+                           const PairList& list, const ObjectList& objects,
                            const Quantities& quantities) {
   SeparationReader reader(node, quantities);
   const auto side = reader.read_human_side(between);
@@ -151,12 +151,19 @@ Separation read_separation(const YamlNode& node, const Between& between, const Z
   const auto is_of = [](const std::vector<std::uint32_t>& members, std::uint32_t object) {
     return std::ranges::binary_search(members, object);
   };
-  for (const PairKey key : objects.touching) {
+  const auto is_contact = [&](PairKey key) {
+    const auto is_between = [&](std::uint32_t person, std::uint32_t robot) {
+      return is_of(people, person) && is_of(robots, robot) && !objects.objects[robot].fixed;
+    };
     const std::uint32_t a = first_of(key), b = second_of(key);
-    if (!(is_of(people, a) && is_of(robots, b)) && !(is_of(people, b) && is_of(robots, a)))
-      continue;
-    quantities.diagnostics().add(
-        node, no_contact_with_people(objects.objects[a], objects.objects[b], zone));
+    return is_between(a, b) || is_between(b, a);
+  };
+  for (const std::vector<PairKey>* keys : {&objects.touching, &list.allowed}) {
+    const auto found = std::ranges::find_if(*keys, is_contact);
+    if (found == keys->end()) continue;
+    quantities.diagnostics().add(node,
+                                 no_contact_with_people(objects.objects[first_of(*found)],
+                                                        objects.objects[second_of(*found)], zone));
     return separation;
   }
   // A sensor measures no speed of what it sees.
@@ -179,7 +186,7 @@ Separation read_separation(const YamlNode& node, const Between& between, const Z
     return separation;
   }
   for (const std::uint32_t pair : zone.pairs)
-    separation.human_is_first.push_back(std::ranges::binary_search(people, pairs[pair].first));
+    separation.human_is_first.push_back(std::ranges::binary_search(people, list.pairs[pair].first));
   return separation;
 }
 

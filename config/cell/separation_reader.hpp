@@ -3,15 +3,16 @@
 
 #include <optional>
 
-#include "config/cell/group_index.hpp"
+#include "config/cell/pair_reader.hpp"
 #include "config/scene/scene.hpp"
 #include "config/yaml/quantities.hpp"
 
 namespace clearance {
 
-// Reports objects that are on both sides. `zone` has its pairs, as indices into `pairs`.
+// Reports objects that are on both sides, and pairs of a person and what moves that are allowed to
+// touch. `zone` has its pairs, as indices into `list`.
 [[nodiscard]] Separation read_separation(const YamlNode& node, const Between& between,
-                                         const Zone& zone, const std::vector<ObjectPair>& pairs,
+                                         const Zone& zone, const PairList& list,
                                          const ObjectList& objects, const Quantities& quantities);
 
 }  // namespace clearance

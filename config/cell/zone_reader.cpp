@@ -74,7 +74,7 @@ class ZoneReader {
       fill_zone(node, *between, objects_, pairs_, group_index_, diagnostics, zone);
       if (separation != nullptr) {
         zone.separation =
-            read_separation(*separation, *between, zone, pairs_.pairs, objects_, quantities_);
+            read_separation(*separation, *between, zone, pairs_, objects_, quantities_);
       }
     }
     return zone;

@@ -10,6 +10,7 @@
 #include <utility>
 #include <vector>
 
+#include "config/scene/absent_robots.hpp"
 #include "monitor/ask/robots_of_question.hpp"
 #include "monitor/zones/contact_end.hpp"
 
@@ -105,12 +106,19 @@ std::optional<std::string> complete(const Scene& scene, const InputState& state,
   const auto is_stated = [&](const std::string& name) {
     return std::ranges::find(question.joints, name, &StatedJoint::name) != question.joints.end();
   };
+  const auto is_settled = [&](const std::string& name) {
+    return moves(question, name) || is_held(name) || is_stated(name);
+  };
+  AbsentRobots absent(scene);
+  absent.find_left_out(
+      scene, [&](std::uint32_t v) { return is_settled(scene.variables[v].name); },
+      [&](std::uint32_t object) { return places(question, scene.objects[object].name); });
   const std::vector<bool> is_of_question = robots_of_question(scene, question);
   for (std::size_t i = 0; i < scene.variables.size(); ++i) {
     const JointVariable& variable = scene.variables[i];
     const PresentJoint& joint = state.joints[i];
     const std::string& name = variable.name;
-    if (moves(question, name) || is_held(name) || is_stated(name)) continue;
+    if (is_settled(name) || absent.is_left_out(variable.robot)) continue;
     if (joint.state != PresentPose::State::kUsable) {
       missing.add(
           fmt::format("the position of joint '{}' {}", variable.name, what_is_wrong(joint.state)));

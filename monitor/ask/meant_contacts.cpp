@@ -48,8 +48,8 @@ std::optional<std::string> MotionSearch::take_contacts(const Question& question)
       if (std::isnan(stated.until) || std::isnan(stated.distance))
         return "the end of a contact is not a number";
       const auto [first, second] = std::minmax(objects[0], objects[1]);
-      if (auto text =
-              contact_with_people(scene_.objects, scene_.pairs, scene_.zones, first, second))
+      if (auto text = contact_with_people(scene_.objects, scene_.robots, scene_.pairs, scene_.zones,
+                                          first, second))
         return text;
       contacts_.push_back({first, second, -stated.depth, stated.until, stated.distance});
     }

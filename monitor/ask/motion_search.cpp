@@ -158,6 +158,7 @@ MotionSearch::OpenList MotionSearch::all_pairs() noexcept {
     const bool base_counts =
         bundles[b].base_is_link && posture_.is_of_question(bundles[b].object_base);
     if (!posture_.is_of_question(bundles[b].object_tip) && !base_counts) continue;
+    if (!posture_.is_present(bundles[b].object_tip)) continue;
     if (!posture_.all_present()) {
       count = 0;
       for (std::uint32_t i = bundles[b].first; i < bundles[b].end; ++i) {

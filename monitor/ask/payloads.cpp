@@ -94,6 +94,7 @@ void Attacher::carry(std::uint32_t object, const Place& place, const Pose& link_
   robot.base.base_from_root = link_from_object;
   robot.links.push_back({.name = robot.name, .object = object});
   robot.base_error = scene_.attached_error;
+  scene_.objects[object].absent = false;
   scene_.robots.push_back(std::move(robot));
   account_for(chain_rounding(scene_.robots, scene_.variables).back(), scene_.objects[object]);
 }
@@ -160,7 +161,8 @@ std::optional<std::string> Attacher::attach(const Payload& payload) {
           std::find(other.groups.begin(), other.groups.end(), touched) != other.groups.end();
       if (other.name != touched && !in_group) continue;
       is_known = true;
-      if (auto text = contact_with_people(scene_.objects, scene_.pairs, scene_.zones, object, i))
+      if (auto text = contact_with_people(scene_.objects, scene_.robots, scene_.pairs, scene_.zones,
+                                          object, i))
         return "payload \"" + payload.name + "\" may touch \"" + touched + "\": " + *text;
       left_out_.insert(key_of(object, i));
     }

@@ -6,15 +6,11 @@
 #include "config/scene/chain_rounding.hpp"
 #include "monitor/bodies/directed_rounding.hpp"
 #include "monitor/clouds/seen_cloud.hpp"
-#include "monitor/inputs/joint_batch.hpp"
 
 namespace clearance {
 namespace {
 
 std::string sensor_named(const std::string& name) { return "sensor \"" + name + "\": "; }
-
-// A joint that mimics another may be stated, if it is where the other one moves it. Rad or m.
-constexpr double kMimicTolerance = 1e-6;
 
 std::vector<double> radii_of(const Scene& scene, const std::vector<PosedPart>& parts) {
   std::vector<double> radii(scene.objects.size(), 0.0);
@@ -22,15 +18,6 @@ std::vector<double> radii_of(const Scene& scene, const std::vector<PosedPart>& p
     radii[part.object] = std::max(radii[part.object], part.bounding_radius);
   }
   return radii;
-}
-
-const RobotJoint* mimic_named(const Scene& scene, const std::string& name) noexcept {
-  for (const Robot& robot : scene.robots) {
-    for (const RobotJoint& joint : robot.joints) {
-      if (joint.name == name && variables_of(joint.type) == 1) return &joint;
-    }
-  }
-  return nullptr;
 }
 
 }  // namespace
@@ -55,6 +42,7 @@ Posture::Posture(const Scene& scene)
       pose_(scene.objects.size()),
       present_(scene.objects.size(), 0),
       left_out_(scene.objects.size(), 0),
+      absent_robots_(scene),
       speed_(scene.objects.size(), 0.0),
       age_(scene.objects.size(), 0.0),
       turn_speed_(scene.objects.size(), 0.0),
@@ -76,7 +64,7 @@ Posture::Posture(const Scene& scene)
   }
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     object_named_.emplace(scene.objects[i].name, i);
-    present_[i] = scene.objects[i].fixed || is_link(i);
+    present_[i] = (scene.objects[i].fixed && !scene.objects[i].absent) || is_link(i);
     if (scene.objects[i].fixed) {
       pose_[i] = scene.objects[i].world_from_object;
       place_resting(i);
@@ -93,105 +81,13 @@ std::optional<std::string> Posture::take(const Question& question) {
   if (auto text = take_poses(question)) return text;
   if (auto text = take_motions(question)) return text;
   if (auto text = open_object(question)) return text;
+  leave_out_absent_robots();
+  if (auto text = open_joint()) return text;
+  if (auto text = slide_out_of_limits()) return text;
   free_carriers(question);
   note_free();
   place_bases();
   note_moving();
-  return std::nullopt;
-}
-
-std::optional<std::string> Posture::take_joints(const Question& question) {
-  for (TrackedVariable& variable : variables_) {
-    variable.input.has_value = false;
-    variable.velocity_known = true;
-    variable.velocity = 0.0;
-  }
-  std::fill(bounds_.begin(), bounds_.end(), VariableBounds());
-  for (const std::uint32_t moved : trajectory_.moved()) variables_[moved].input.has_value = true;
-  for (const HeldJoint& held : question.held) {
-    if (auto text = hold(held)) return text;
-  }
-  free_variables_.clear();
-  if (auto text = set_deviations()) return text;
-  for (const StatedJoint& stated : question.joints) {
-    if (auto text = set_free(stated, question.others)) return text;
-  }
-  // Joints that mimic others, once these have positions.
-  for (const HeldJoint& held : question.held) {
-    if (variable_named(scene_, held.name)) continue;
-    const RobotJoint& joint = *mimic_named(scene_, held.name);
-    const TrackedVariable& leader = variables_[joint.variable];
-    const auto moved = trajectory_.moved();
-    const bool moves = std::find(moved.begin(), moved.end(), joint.variable) != moved.end();
-    const double follows = joint.multiplier * leader.position + joint.offset;
-    if (!leader.input.has_value || moves || std::abs(follows - held.position) > kMimicTolerance)
-      return "joint \"" + held.name + "\" mimics joint \"" + scene_.variables[joint.variable].name +
-             "\" and is not held where that one moves it";
-  }
-  if (auto text = open_joint()) return text;
-  return slide_out_of_limits();
-}
-
-std::optional<std::string> Posture::hold(const HeldJoint& held) {
-  std::uint32_t variable = 0;
-  if (variable_named(scene_, held.name) || mimic_named(scene_, held.name) == nullptr)
-    return set_variable(held.name, held.position, variable);
-  if (!(std::abs(held.position) <= kLargestJoint))
-    return "the position of joint \"" + held.name + "\" is not finite, or larger than 1e6";
-  return std::nullopt;
-}
-
-std::optional<std::string> Posture::set_variable(const std::string& name, double position,
-                                                 std::uint32_t& variable) {
-  if (!(std::abs(position) <= kLargestJoint))
-    return "the position of joint \"" + name + "\" is not finite, or larger than 1e6";
-  const auto found = variable_named(scene_, name);
-  if (!found) return "the cell has no joint \"" + name + "\"";
-  variable = *found;
-  if (variables_[variable].input.has_value)
-    return "joint \"" + name + "\" is held, and has a position already";
-  variables_[variable].input.has_value = true;
-  variables_[variable].position = position;
-  return std::nullopt;
-}
-
-std::optional<std::string> Posture::open_joint() const {
-  for (const Robot& robot : scene_.robots) {
-    for (const RobotJoint& joint : robot.joints) {
-      const std::uint32_t count = variables_of(joint.type);
-      for (std::uint32_t v = joint.variable; v < joint.variable + count; ++v) {
-        if (!variables_[v].input.has_value) {
-          return "joint \"" + scene_.variables[v].name +
-                 "\" has no position: the motion moves it, or it is held";
-        }
-        const auto moved = trajectory_.moved();
-        if (count > 1 && std::find(moved.begin(), moved.end(), v) != moved.end()) {
-          return "joint \"" + joint.name + "\" is planar or floating: it can only be held";
-        }
-      }
-    }
-  }
-  return std::nullopt;
-}
-
-// The reaches of chains include the limits of sliding joints.
-std::optional<std::string> Posture::slide_out_of_limits() const {
-  const auto is_outside = [&](std::uint32_t v, double position) {
-    const JointVariable& limits = scene_.variables[v];
-    return std::abs(position) > kLargestLength ||
-           position < limits.lower - limits.limit_tolerance ||
-           position > limits.upper + limits.limit_tolerance;
-  };
-  for (const Robot& robot : scene_.robots) {
-    for (const RobotJoint& joint : robot.joints) {
-      if (joint.type != JointType::kPrismatic) continue;
-      if (trajectory_.leaves(
-              joint.variable, [&](double p) { return is_outside(joint.variable, p); },
-              variables_[joint.variable].position)) {
-        return "joint \"" + scene_.variables[joint.variable].name + "\" slides out of its limits";
-      }
-    }
-  }
   return std::nullopt;
 }
 
@@ -285,10 +181,8 @@ std::optional<std::string> Posture::take_motions(const Question& question) {
 }
 
 std::optional<std::string> Posture::open_object(const Question& question) {
-  all_present_ = true;
   for (const std::uint32_t i : free_) {
     const Object& object = scene_.objects[i];
-    all_present_ = all_present_ && present_[i] != 0;
     if (left_out_[i] != 0) continue;
     if (present_[i] == 0 && !object.absent && object.is_seen())
       return sensor_named(object.name) +

@@ -10,6 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
+#include "config/scene/absent_robots.hpp"
 #include "config/scene/scene.hpp"
 #include "monitor/ask/chains.hpp"
 #include "monitor/ask/moving_objects.hpp"
@@ -117,6 +118,7 @@ class Posture {
                                                         std::uint32_t& variable);
   void free_carriers(const Question& question);
   void note_free();
+  void leave_out_absent_robots() noexcept;
   [[nodiscard]] std::optional<std::string> open_joint() const;
   [[nodiscard]] std::optional<std::string> slide_out_of_limits() const;
   [[nodiscard]] std::optional<std::string> take_poses(const Question& question);
@@ -159,6 +161,7 @@ class Posture {
   std::vector<double> radii_;                     // by object: about its origin, m
   std::vector<Pose> pose_;                        // of objects that are not links
   std::vector<std::uint8_t> present_, left_out_;  // by object
+  AbsentRobots absent_robots_;
   bool all_present_ = true;
   std::vector<double> speed_, age_;  // by object: that are assumed, m/s; of a stated pose, s
   std::vector<double> turn_speed_;   // by object, rad/s

@@ -81,8 +81,9 @@ void MotionSearch::scale_time() {
   std::size_t count = 0;
   for (std::uint32_t i = 0; i < separated_.size(); ++i) {
     const PartPair& pair = pairs_.pairs()[separated_[i].pair];
-    if (posture_.is_present(posture_.parts()[pair.base].object) &&
-        posture_.is_of_question(limited_robot(i)))
+    const std::uint32_t robot = limited_robot(i);
+    if (posture_.is_present(posture_.parts()[pair.base].object) && posture_.is_present(robot) &&
+        posture_.is_of_question(robot))
       scaled_[count++] = i;
   }
   scaling.is_limited = count > 0 || question_->stoppable;

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "config/scene/absent_robots.hpp"
 #include "config/scene/body_id.hpp"
 #include "monitor/wire/ros_types.hpp"
 
@@ -12,14 +13,8 @@ namespace {
 // body. Empty: there, and nothing says where.
 using State = std::optional<std::string>;
 
-bool is_absent(const Robot& person, const Scene& scene) {
-  return std::ranges::any_of(person.links, [&](const RobotLink& link) {
-    return link.object != RobotLink::kNoObject && scene.objects[link.object].absent;
-  });
-}
-
 State state_of(const Robot& person, const Scene& scene) {
-  return is_absent(person, scene) ? State() : State(person.person->id);
+  return is_absent(person, scene.objects) ? State() : State(person.person->id);
 }
 
 // True if another robot has a joint of the name that one of the person's would get.

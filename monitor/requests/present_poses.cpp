@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "config/scene/absent_robots.hpp"
+
 namespace clearance {
 
 std::optional<AttachedCarrier> carrier_of(const std::string& name, const Scene& scene) {
@@ -38,13 +40,6 @@ std::optional<std::string> root_above(const std::string& link, const Scene& scen
     return robot.links.front().name;
   }
   return std::nullopt;
-}
-
-// Tells it of a link without shapes by the other links.
-bool is_absent(const Robot& robot, const Scene& scene) {
-  return std::ranges::any_of(robot.links, [&](const RobotLink& link) {
-    return link.object != RobotLink::kNoObject && scene.objects[link.object].absent;
-  });
 }
 
 // Tells whether the base of the robot with this root is in both scenes the same.
@@ -114,7 +109,7 @@ std::optional<PresentPoses> present_poses(const std::vector<std::string>& names,
   if (!loop.ask(question, loop_ended)) return std::nullopt;
   for (std::size_t i = 0; i < known.size(); ++i) {
     poses[known[i]] = question.poses()[i];
-    if (asked[i].is_link && is_absent(scene.robots[asked[i].robot], scene))
+    if (asked[i].is_link && is_absent(scene.robots[asked[i].robot], scene.objects))
       poses[known[i]] = {.state = PresentPose::State::kAbsent};
   }
   return poses;

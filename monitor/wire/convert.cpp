@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <functional>
 #include <limits>
 #include <string>
 #include <vector>
@@ -257,6 +258,28 @@ void from_wire(const clearance_msg_PoseBatch& batch, PoseBatch& out) {
   }
 }
 
+namespace {
+
+// Of two positions of one joint in one message, none could be meant. NaN is refused as not finite.
+// Most messages have their joints in the order of the scene.
+void refuse_two_positions(std::vector<JointSample>& joints) {
+  const auto out_of_order =
+      std::ranges::adjacent_find(joints, std::ranges::greater_equal(), &JointSample::variable);
+  if (out_of_order == joints.end()) return;
+  for (std::size_t i = 0; i < joints.size(); ++i) {
+    if (joints[i].variable >= JointNames::kUnused) continue;
+    bool differs = false;
+    for (std::size_t k = i + 1; k < joints.size(); ++k)
+      differs = differs || (joints[k].variable == joints[i].variable &&
+                            !(joints[k].position == joints[i].position));
+    for (std::size_t k = i; differs && k < joints.size(); ++k)
+      if (joints[k].variable == joints[i].variable)
+        joints[k].position = std::numeric_limits<double>::quiet_NaN();
+  }
+}
+
+}  // namespace
+
 void from_wire(const clearance_msg_JointStates& states, const JointNames& names, PoseBatch& out) {
   out.source = SourceName(states.source);
   out.sequence_number = states.sequence_number;
@@ -277,6 +300,7 @@ void from_wire(const clearance_msg_JointStates& states, const JointNames& names,
     sample.has_velocity = has_velocities;
     if (has_velocities) sample.velocity = states.velocities._buffer[i];
   }
+  refuse_two_positions(out.joints);
 }
 
 void from_wire(const sensor_msgs_msg_dds__JointState_& states, const JointNames& names,
@@ -298,6 +322,7 @@ void from_wire(const sensor_msgs_msg_dds__JointState_& states, const JointNames&
     sample.has_velocity = has_velocities;
     if (has_velocities) sample.velocity = states.velocity._buffer[i];
   }
+  refuse_two_positions(out.joints);
 }
 
 // All samples of a batch have one stamp. All or none have a velocity, and all or none are stopping.

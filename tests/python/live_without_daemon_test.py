@@ -155,6 +155,7 @@ def test_a_closed_object_says_so(connection, make, calls):
     "call, error",
     [
         (lambda c: clearance.JointWriter("", ARM, c), ValueError),
+        (lambda c: clearance.JointWriter("a", ["x", "y", "x"], c), ValueError),
         (lambda c: clearance.JointWriter("x" * 33, ARM, c), ValueError),
         (lambda c: clearance.JointWriter("x", 5, c), TypeError),
         (lambda c: clearance.JointWriter("x", ARM, "here"), TypeError),

@@ -133,6 +133,52 @@ def test_what_does_not_fit_the_cell_is_refused_with_the_reason(planar, change, m
         planar.ask(Question(**{**SWING, **REST, **change}))
 
 
+PERSON_AND_POST = """
+name: absent
+units: {length: m, angle: rad}
+ros2: {world_frame: map}
+robots:
+  - {name: anna, person: {stature: 1.75, error: 0}, absent: true}
+  - {name: bert, person: {stature: 1.75, error: 0}}
+objects: [{name: post, fixed: true, sphere: {radius: 0.1}}]
+pairs: [{between: [anna, bert]}, {between: [anna, post]}, {between: [bert, post]}]
+"""
+
+
+@pytest.fixture
+def two_people(tmp_path):
+    file = tmp_path / "cell.yaml"
+    file.write_text(PERSON_AND_POST)
+    return clearance.Cell(file)
+
+
+def position_of(joint, rot_w=1.0):
+    return rot_w if joint.endswith("rot_w") else 9.0 if joint.endswith("trans_x") else 0.0
+
+
+def test_an_absent_robot_needs_no_positions(two_people):
+    bert = {joint: position_of(joint) for joint in two_people.joints if "bert" in joint}
+    moved = "r_knee_y_bert" if "r_knee_y_bert" in bert else next(j for j in bert if "base" not in j)
+    del bert[moved]
+    answer = two_people.ask(Question([moved], [0, 1], [[0.0], [0.1]], held=bert, others="still"))
+    assert answer.pair is not None and "anna" not in "".join(answer.pair) and answer.lower > 5
+    rows = np.array([[position_of(j) if "bert" in j else math.nan for j in two_people.joints]])
+    found = two_people.distances(rows, below=5.0)
+    absent = np.array(["anna" in "".join(pair) for pair in two_people.pairs])
+    assert np.all((found.status[0] == clearance.PairStatus.ABSENT) == absent)
+    assert found.verdict[0] == Verdict.FREE
+    rows[0, next(i for i, j in enumerate(two_people.joints) if "anna" in j)] = 0.0
+    with pytest.raises(ValueError, match="anna"):
+        two_people.distances(rows)
+
+
+@pytest.mark.parametrize("length", [0.0, 1e-200, 0.5, 2.0])
+def test_a_quaternion_has_the_length_one(two_people, length):
+    row = [position_of(j, length) if "bert" in j else math.nan for j in two_people.joints]
+    with pytest.raises(ValueError, match="quaternion.*bert"):
+        two_people.distances([row])
+
+
 @pytest.mark.parametrize(
     "change, error, match",
     [

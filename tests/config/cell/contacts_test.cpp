@@ -98,6 +98,24 @@ TEST(ContactKeys, WhatIsAttachedToARobotMayNotTouchAPerson) {
   EXPECT_FALSE(errors_of(carried(too_many)).empty()) << "a million would take minutes";
 }
 
+// An exception leaves a pair out of every zone, so a person would limit nothing.
+TEST(ContactKeys, AnExceptionLeavesNoPairOfAPersonOutThatARobotMoves) {
+  const auto allowed = [](const std::string& pair, const std::string& keys_of_robot) {
+    std::string text =
+        cell_with("allowed_collisions: [{between: [" + pair + "], reason: they may touch}]\n");
+    const std::string robot = "{name: robot, ";
+    text.replace(text.find(robot), robot.size(), robot + keys_of_robot);
+    const std::string people = "between: [person, robot], enter";
+    return text.replace(text.find(people), people.size(), "between: [person, things], enter")
+        .replace(text.find("{between: [person, robot]}"), 26, "{between: [person, things]}");
+  };
+  EXPECT_EQ(errors_of(allowed("robot, table", "")), "");
+  EXPECT_EQ(errors_of(allowed("robot, person", "fixed: true, ")), "") << "a base, say";
+  const std::string error = errors_of(allowed("robot, person", ""));
+  for (const char* name : {"'robot'", "'person'", "'people'"})
+    EXPECT_NE(error.find(name), std::string::npos) << name << " in: " << error;
+}
+
 // The entries of both scenes are those of the same names and terms.
 TEST(ContactKeys, AChangedSceneKnowsWhichContactsGoOn) {
   const Scene before = scene_of(one("between: [things, table], depth: 0.002"));

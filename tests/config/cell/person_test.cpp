@@ -54,6 +54,28 @@ TEST(Person, HasTwelveLimbsWithItsErrorThatGroupsNameAndABaseOnTheFrameOfItsBody
   EXPECT_EQ(scene.robots[0].person->id, "anna");
 }
 
+// Without `separation`, too.
+TEST(Person, MayBeInNoContactWithWhatMoves) {
+  const auto text = [](const std::string& post, const std::string& end) {
+    return "name: test\nunits: {length: m, angle: deg}\nros2: {world_frame: map}\nrobots:\n"
+           "  - {name: anna, person: {stature: 1.7, error: 0.06}, groups: [people]}\n"
+           "  - {name: bert, person: {stature: 1.7, error: 0.06}, groups: [people]}\n"
+           "objects:\n  - {name: post, " +
+           post +
+           ", sphere: {radius: 0.1}}\n"
+           "pairs:\n  - {between: [people, post]}\n  - {between: [anna, bert]}\n" +
+           end;
+  };
+  const auto contact = [](const std::string& a, const std::string& b) {
+    return "contacts: [{name: c, between: [" + a + ", " + b +
+           "], depth: 0.05, by: me, reason: test}]\n";
+  };
+  EXPECT_THAT(errors_of(text("max_speed: 1", contact("l_elbow_anna", "post"))),
+              HasSubstr("'l_elbow_anna' against 'post'"));
+  EXPECT_EQ(errors_of(text("fixed: true", contact("l_elbow_anna", "post"))), "");
+  EXPECT_EQ(errors_of(text("max_speed: 1", contact("l_elbow_anna", "l_elbow_bert"))), "");
+}
+
 // Drillis and Contini: the upper arm has 0.186 of the stature, the shank 0.246.
 TEST(Person, HasLimbsOfItsStature) {
   for (const double stature : {1.3, 1.75, 2.1}) {

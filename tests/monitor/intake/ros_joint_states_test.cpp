@@ -48,6 +48,25 @@ TEST_F(RosJointStatesTest, ComeInAnyOrderInPartAndWithNamesThatTheCellDoesNotHav
   EXPECT_EQ(heard.told(lines::kUnknownJoints.code), 1u) << "each name once";
 }
 
+// The tick refuses what is not finite, and the joint ages. Equal positions say nothing else.
+TEST_F(RosJointStatesTest, TwoPositionsOfOneJointInOneMessageAreNone) {
+  ASSERT_TRUE(take({{"right_push", "right_shoulder", "right_push"}, {0.1, -0.5, 0.2}, {}}));
+  const PoseBatch batch = heard.one();
+  ASSERT_EQ(batch.joints.size(), 3u);
+  EXPECT_TRUE(std::isnan(batch.joints[0].position) && std::isnan(batch.joints[2].position));
+  EXPECT_EQ(batch.joints[1].position, -0.5);
+  ASSERT_TRUE(take({{"right_push", "right_push"}, {0.1, 0.1}, {}}));
+  for (const JointSample& sample : heard.one().joints) EXPECT_EQ(sample.position, 0.1);
+
+  PoseBatch sent{SourceName("arm"), 1, 0, {}};
+  sent.joints = {joint(0, 0.1, now()), joint(1, 0.3, now()), joint(0, 0.2, now())};
+  PoseBatch received;
+  from_wire(*make_joint_states(sent, cell.scene), JointNames(cell.scene), received);
+  ASSERT_EQ(received.joints.size(), 3u);
+  EXPECT_TRUE(std::isnan(received.joints[0].position) && std::isnan(received.joints[2].position));
+  EXPECT_EQ(received.joints[1].position, 0.3);
+}
+
 // The tick refuses such a joint without a name: only the message has it.
 TEST_F(RosJointStatesTest, OfOurOwnTopicWithANameThatTheCellDoesNotHaveAreTold) {
   PoseBatch sent{SourceName("arm"), 1, 0, {}};

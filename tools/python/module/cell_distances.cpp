@@ -98,16 +98,22 @@ Rows make_arrays(py::ssize_t n, std::size_t chosen, const Scene& scene, bool poi
 // A position that is not plausible.
 struct BadPosition {
   std::size_t row;
-  std::uint32_t variable;
+  Configurations::Implausible why;
   double position;
 };
 
 [[noreturn]] void refuse(const BadPosition& bad, const Scene& scene) {
-  const JointVariable& joint = scene.variables[bad.variable];
+  const JointVariable& joint = scene.variables[bad.why.variable];
+  if (bad.why.length != 1.0) {
+    throw py::value_error(
+        fmt::format("joints[{0}, {1}:{2}]: found a quaternion of the length {3} from '{4}' on; "
+                    "expected 1",
+                    bad.row, bad.why.variable, bad.why.variable + 4, bad.why.length, joint.name));
+  }
   throw py::value_error(
       fmt::format("joints[{}, {}]: found {} for '{}'; expected a position within its limits, {} to "
                   "{}, and within 1e6 rad or 1e4 m",
-                  bad.row, bad.variable, bad.position, joint.name, joint.lower, joint.upper));
+                  bad.row, bad.why.variable, bad.position, joint.name, joint.lower, joint.upper));
 }
 
 // The work of one call, which threads share. Every kTogether configurations begin anew, so that the
@@ -165,7 +171,7 @@ class Work {
       for (std::size_t i = begin; i < std::min(begin + kTogether, count_); ++i) {
         std::copy_n(joints_ + i * row.size(), row.size(), row.begin());
         if (const auto bad = configurations.implausible(row)) {
-          note_bad({i, *bad, row[*bad]});
+          note_bad({i, *bad, row[bad->variable]});
           break;
         }
         if (rows_.limit) {
@@ -330,14 +336,15 @@ void add_distances(py::module_& module, CellClass& cells) {
             R"(The distances of all pairs in n configurations.
 
 joints: (n, joints), rad or m, in the order of Cell.joints. poses: of moving objects that are no
-links, by name; pairs of objects without a pose are unknown. points: False leaves points and normals
+links, by name; pairs of objects without a pose are unknown. The joints of an absent robot may all be
+NaN: its pairs are then absent. points: False leaves points and normals
 out. gradients: True adds the derivatives with respect to the joints. pairs: only these, by the
 names of their objects. below: whether a pair is nearer than this, m; a configuration ends at the
 first pair that is, and pairs that are proven to be farther are not queried: their lower bounds are
 known, other figures are those of an unknown pair. threads: 0 takes all cores.
 
 Raises ValueError for another shape, or for a position that is not finite or outside the joint's
-limits and their tolerance; KeyError for an unknown object or pair. Releases the interpreter's lock; Ctrl-C
+limits and their tolerance, or for a quaternion whose length is not 1; KeyError for an unknown object or pair. Releases the interpreter's lock; Ctrl-C
 ends it. The same call gives the same bits, for any number of threads.)");
 }
 

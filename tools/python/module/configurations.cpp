@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 #include <limits>
 #include <numeric>
 
@@ -9,6 +10,7 @@
 #include "monitor/bodies/bounding_sphere.hpp"
 #include "monitor/bodies/directed_rounding.hpp"
 #include "monitor/bodies/fixed_order.hpp"
+#include "monitor/bodies/joint_quaternion.hpp"
 #include "monitor/inputs/joint_batch.hpp"
 #include "monitor/interface/gradient_rows.hpp"
 #include "monitor/interface/report.hpp"
@@ -50,6 +52,7 @@ Configurations::Configurations(const Scene& scene)
       errors_(scene),
       kinematics_(scene.robots),
       variables_(scene.variables.size()),
+      absent_robots_(scene),
       bases_(scene.robots.size()),
       known_(scene.objects.size()),
       is_link_(scene.objects.size()),
@@ -105,7 +108,8 @@ void Configurations::begin() {
   std::iota(chosen_.begin(), chosen_.end(), 0U);
   for (std::uint32_t i = 0; i < known_.size(); ++i) {
     known_[i] = false;
-    if (scene_.objects[i].fixed) put(i, scene_.objects[i].world_from_object);
+    if (scene_.objects[i].fixed && !scene_.objects[i].absent)
+      put(i, scene_.objects[i].world_from_object);
   }
   std::ranges::fill(bases_, LinkState());
 }
@@ -127,9 +131,25 @@ void Configurations::place(std::uint32_t object, const Pose& world_from_object) 
   }
 }
 
-std::optional<std::uint32_t> Configurations::implausible(std::span<const double> joints) const {
+void Configurations::find_left_out(std::span<const double> joints) noexcept {
+  absent_robots_.find_left_out(
+      scene_, [&](std::uint32_t v) { return !std::isnan(joints[v]); },
+      [&](std::uint32_t object) { return known_[object] != 0; });
+}
+
+std::optional<Configurations::Implausible> Configurations::implausible(
+    std::span<const double> joints) {
+  find_left_out(joints);
   for (std::uint32_t v = 0; v < joints.size(); ++v) {
-    if (!(joints[v] >= least_[v] && joints[v] <= largest_[v])) return v;
+    if (absent_robots_.is_left_out(scene_.variables[v].robot)) continue;
+    if (!(joints[v] >= least_[v] && joints[v] <= largest_[v])) return Implausible{v};
+  }
+  for (std::uint32_t r = 0; r < scene_.robots.size(); ++r) {
+    if (absent_robots_.is_left_out(r)) continue;
+    for (const RobotJoint& joint : scene_.robots[r].joints) {
+      const double length = wrong_length(joint, [&](std::uint32_t v) { return joints[v]; });
+      if (length != 1.0) return Implausible{joint.variable + 3, length};
+    }
   }
   return std::nullopt;
 }
@@ -141,9 +161,10 @@ void Configurations::place_links() noexcept {
     const std::span<const LinkState> states = kinematics_.links(robot);
     for (std::size_t link = 0; link < links.size(); ++link) {
       const std::uint32_t object = links[link].object;
-      if (object == RobotLink::kNoObject || scene_.objects[object].fixed) continue;
+      if (object == RobotLink::kNoObject) continue;
+      if (scene_.objects[object].fixed && !scene_.objects[object].absent) continue;
       known_[object] = false;
-      if (states[link].known) put(object, states[link].pose);
+      if (states[link].known && !absent_robots_.is_left_out(robot)) put(object, states[link].pose);
     }
   }
 }
@@ -169,6 +190,13 @@ bool Configurations::is_known(const Pair& pair) const noexcept {
          first_part_[pair.b] < first_part_[pair.b + 1];
 }
 
+bool Configurations::is_absent(const Pair& pair) const noexcept {
+  const auto is_left_out = [&](std::uint32_t object) {
+    return scene_.objects[object].absent && !known_[object];
+  };
+  return is_left_out(pair.a) || is_left_out(pair.b);
+}
+
 void Configurations::write_unknown(std::size_t index,
                                    const ConfigurationResults& to) const noexcept {
   to.distance[index] = kUnknown;
@@ -184,7 +212,11 @@ void Configurations::write_unknown(std::size_t index,
 
 void Configurations::evaluate(Pair& pair, std::size_t index, double enough,
                               const ConfigurationResults& to) noexcept {
-  if (!is_known(pair)) return write_unknown(index, to);
+  if (!is_known(pair)) {
+    write_unknown(index, to);
+    if (is_absent(pair)) to.status[index] = static_cast<std::uint8_t>(PairStatus::kAbsent);
+    return;
+  }
   const std::uint32_t first_a = first_part_[pair.a], first_b = first_part_[pair.b];
   const std::uint32_t parts_of_a = first_part_[pair.a + 1] - first_a;
   const std::uint32_t parts_of_b = first_part_[pair.b + 1] - first_b;
@@ -256,7 +288,11 @@ void Configurations::differentiate(const Pair& pair, const Vec3& on_a, const Vec
 }
 
 void Configurations::place(std::span<const double> joints) noexcept {
-  for (std::size_t v = 0; v < joints.size(); ++v) variables_[v].position = joints[v];
+  find_left_out(joints);
+  for (std::size_t v = 0; v < joints.size(); ++v) {
+    variables_[v].input.has_value = !std::isnan(joints[v]);
+    variables_[v].position = variables_[v].input.has_value ? joints[v] : 0.0;
+  }
   place_links();
 }
 
@@ -289,7 +325,7 @@ Verdict Configurations::decide(std::span<const double> joints, double limit,
       first_looked_at_ = i;
       return Verdict::kBelow;
     }
-    if (!(to.lower[i] >= limit)) verdict = Verdict::kUndecided;
+    if (!(to.lower[i] >= limit) && !is_absent(pair)) verdict = Verdict::kUndecided;
   }
   return verdict;
 }

@@ -10,6 +10,7 @@
 #include <span>
 #include <vector>
 
+#include "config/scene/absent_robots.hpp"
 #include "config/scene/scene.hpp"
 #include "config/scene/stated_errors.hpp"
 #include "core/distance.hpp"
@@ -47,11 +48,17 @@ class Configurations {
   // The pairs that count from now on, as indices into Scene::pairs, in the order of the results.
   void choose(std::span<const std::uint32_t> pairs) { chosen_.assign(pairs.begin(), pairs.end()); }
 
-  // The first variable whose position is not finite or not plausible: beyond the joint's limits and
-  // their tolerance.
-  [[nodiscard]] std::optional<std::uint32_t> implausible(std::span<const double> joints) const;
+  // A position that is not finite or not plausible: beyond the joint's limits and their tolerance,
+  // or in a quaternion that has not length 1.
+  struct Implausible {
+    std::uint32_t variable;
+    double length = 1.0;  // of the quaternion that begins there
+  };
+  // The first one. An absent robot may have no position at all: all of its joints are NaN.
+  [[nodiscard]] std::optional<Implausible> implausible(std::span<const double> joints);
 
-  // `joints`: plausible positions in the order of Scene::variables. Allocates nothing.
+  // `joints`: plausible positions in the order of Scene::variables. Allocates nothing. Pairs of
+  // absent objects that have no place are absent.
   void evaluate(std::span<const double> joints, const ConfigurationResults& to) noexcept;
   // Decides whether one of the chosen pairs is nearer than `limit`, m, and stops at the first one
   // that is. Results of pairs that it did not need have the bounds that it knows, and else those of
@@ -78,10 +85,13 @@ class Configurations {
     DistanceResult found;
   };
 
+  void find_left_out(std::span<const double> joints) noexcept;
   void place(std::span<const double> joints) noexcept;
   void place_links() noexcept;
   void put(std::uint32_t object, const Pose& pose) noexcept;
   [[nodiscard]] bool is_known(const Pair& pair) const noexcept;
+  // Of an absent object that no position or pose places.
+  [[nodiscard]] bool is_absent(const Pair& pair) const noexcept;
   void write_unknown(std::size_t index, const ConfigurationResults& to) const noexcept;
   void query(const Pair& pair, std::uint32_t part_pair, Closest& closest) noexcept;
   // Parts that are proven to be at least `enough` apart, m, need no query.
@@ -94,6 +104,7 @@ class Configurations {
   StatedErrors errors_;
   ForwardKinematics kinematics_;
   std::vector<TrackedVariable> variables_;
+  AbsentRobots absent_robots_;
   std::vector<double> least_, largest_;        // plausible positions, by variable
   std::vector<LinkState> bases_;               // by robot
   std::vector<std::uint8_t> known_, is_link_;  // by object

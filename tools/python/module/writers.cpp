@@ -2,8 +2,11 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
 #include <list>
+#include <string>
 #include <utility>
+#include <vector>
 
 #include "monitor/client/client.hpp"
 #include "tools/python/module/arrays.hpp"
@@ -35,6 +38,16 @@ bool wait_heard(Parts& parts, const std::optional<double>& timeout_s) {
   });
 }
 
+// Of two positions of one joint, none could be meant.
+std::vector<std::string> each_once(std::vector<std::string> names) {
+  for (auto name = names.begin(); name != names.end(); ++name) {
+    if (std::find(names.begin(), name, *name) == name) continue;
+    throw py::value_error(
+        fmt::format("names: found the joint '{}' twice; expected each joint once", *name));
+  }
+  return names;
+}
+
 struct JointParts {
   JointParts(SharedConnection joined, const std::string& source, std::vector<std::string> of)
       : connection(std::move(joined)), names(std::move(of)), writer(*connection, source, names) {}
@@ -47,7 +60,7 @@ class JointWriter : public Live<JointParts> {
  public:
   JointWriter(const std::string& source, std::vector<std::string> names,
               const SharedConnection& connection)
-      : Live("JointWriter", connection_of(connection), source, std::move(names)) {}
+      : Live("JointWriter", connection_of(connection), source, each_once(std::move(names))) {}
 
   bool write(const py::object& positions, const py::object& velocities,
              const std::optional<std::int64_t>& stamp_ns, bool stopping) {
