@@ -1,4 +1,4 @@
-// Batches wait until the bag has been read further by kLogDisorderNs.
+// Messages wait until the bag has been read further by kLogDisorderNs.
 #include "monitor/recording/bag_log.hpp"
 
 #include <fmt/format.h>
@@ -14,16 +14,19 @@
 namespace clearance {
 namespace {
 
-// The largest number of batches that wait, however close their times are.
+// The largest number of messages that wait, however close their times are.
 constexpr std::size_t kMostWaiting = 1 << 16;
 // 2^62 ns, a time in the year 2116.
 constexpr std::int64_t kLastTimeNs = std::int64_t{1} << 62;
+// What is silent for this long after a message stays silent until the next one, ns.
+constexpr std::int64_t kSilenceNs = 10'000'000'000;
+constexpr std::int64_t kLeastPatienceNs = 1'000'000;
 constexpr std::string_view kJointStateType = "sensor_msgs/msg/JointState";
 
 }  // namespace
 
 BagLog::BagLog(const std::filesystem::path& path, const Cell& cell, const InputLogOptions& options)
-    : scene_(cell.scene),
+    : scene_(&cell.scene),
       options_(options),
       path_(path),
       bag_(open_bag(path)),
@@ -40,7 +43,6 @@ BagLog::BagLog(const std::filesystem::path& path, const Cell& cell, const InputL
                 use(std::move(batch));
                 return true;
               }),
-      heard_(cell.scene.variables.size()),
       given_(cell.scene, options.joints) {
   error_ = given_.error();
   ended_ = !error_.empty();
@@ -50,21 +52,34 @@ const std::string& BagLog::error() const noexcept {
   return bag_->error().empty() ? error_ : bag_->error();
 }
 
-// Fails if the whole bag has no batch.
+// Fails if the whole bag has no batch. A message with an earlier time that comes after this one is
+// not put back in order.
 bool BagLog::next(LoggedBatch& batch) {
-  read_ahead();
-  if (waiting_.empty()) {
-    if (!given_out_ && error().empty()) error_ = nothing_of_use();
-    return false;
+  while (decoded_.empty()) {
+    read_ahead();
+    if (waiting_.empty()) {
+      if (!given_out_ && error().empty()) error_ = nothing_of_use();
+      return false;
+    }
+    const auto first = waiting_.begin();
+    if (let_time_pass(first->first)) continue;
+    const Message message = std::move(first->second);
+    waiting_.erase(first);
+    take(message);
   }
-  const auto first = waiting_.begin();
-  // A batch with an earlier time that comes after this one is not put back in order.
-  last_ns_ = std::max(last_ns_, first->first);
-  batch = std::move(first->second);
-  batch.log_ns = last_ns_;
+  batch = std::move(decoded_.front());
+  decoded_.pop_front();
   given_out_ = given_out_ || batch.scene == nullptr;
-  waiting_.erase(first);
   return true;
+}
+
+void BagLog::change(const Cell& cell) {
+  const SceneMap map = scene_map(*scene_, cell.scene);
+  for (LoggedBatch& decoded : decoded_) pass_on(map, *scene_, cell.scene, decoded.batch);
+  scene_ = &cell.scene;
+  intake_.change(cell);
+  given_ = given_of(*scene_);
+  for (auto& [name, topic] : topics_) choose(topic);
 }
 
 void BagLog::read_ahead() {
@@ -75,67 +90,111 @@ void BagLog::read_ahead() {
     if (ended_) break;
     // With this clamp, sums and differences of times cannot overflow, not even for a hostile bag.
     message.log_ns = std::clamp(message.log_ns, std::int64_t{0}, kLastTimeNs);
-    take(message);
+    keep(message);
   }
 }
 
-void BagLog::take(const BagMessage& message) {
-  const BagTopic& from = *message.topic;
-  const auto [entry, added] = topics_.try_emplace(from.name);
+void BagLog::keep(const BagMessage& message) {
+  const auto [entry, added] = topics_.try_emplace(message.topic->name);
   Topic& topic = entry->second;
   if (added) {
-    topic.type = from.type;
-    const auto wanted = from.encoding == "cdr" ? intake_.topic({from.name, from.type})
-                                               : std::optional<Intake::Topic>();
-    if (wanted) topic.number = wanted->number;
+    topic.of = *message.topic;
+    choose(topic);
   }
   ++topic.messages;
   read_to_ns_ = std::max(read_to_ns_, message.log_ns);
   if (!topic.number) return;
-  topic_ = &topic;
-  log_ns_ = message.log_ns;
-  intake_.take({.topic = *topic.number, .cdr = message.payload, .sent_ns = message.log_ns},
-               {.realtime_ns = message.log_ns, .monotonic_ns = message.log_ns});
+  waiting_.emplace(
+      message.log_ns,
+      Message{&topic, message.log_ns, {message.payload.begin(), message.payload.end()}});
+}
+
+// A changed cell may use more topics, and none that was used is left out.
+void BagLog::choose(Topic& topic) {
+  if (topic.number || topic.of.encoding != "cdr") return;
+  if (const auto wanted = intake_.topic({topic.of.name, topic.of.type}))
+    topic.number = wanted->number;
+}
+
+// Returns false if nothing is due before that time.
+bool BagLog::let_time_pass(std::int64_t until_ns) {
+  if (topic_ == nullptr) return false;
+  const std::int64_t step_ns = std::max(intake_.patience_ns(), kLeastPatienceNs);
+  if (step_ns >= std::min(until_ns, last_ns_ + kSilenceNs) - log_ns_) return false;
+  log_ns_ += step_ns;
+  settle();
+  return true;
+}
+
+void BagLog::take(const Message& message) {
+  topic_ = message.topic;
+  last_ns_ = log_ns_ = std::max(log_ns_, message.log_ns);
+  intake_.take({.topic = *topic_->number, .cdr = message.payload, .sent_ns = message.log_ns},
+               {.realtime_ns = log_ns_, .monotonic_ns = log_ns_});
+  settle();
+}
+
+void BagLog::settle() {
+  intake_.settle({.realtime_ns = log_ns_, .monotonic_ns = log_ns_});
   for (News& news : intake_.take_news()) {
     const bool is_unused =
         news.code == lines::kTopicNotUsed.code && news.level == lines::kTopicNotUsed.level;
-    if (is_unused || news.code == lines::kSlowInput.code) told_.push_back(std::move(news.text));
+    const bool is_told = is_unused || news.code == lines::kSlowInput.code ||
+                         news.code == lines::kBodiesSilent.code ||
+                         news.code == lines::kTooManyBodies.code;
+    if (is_told && std::ranges::find(told_, news.text) == told_.end())
+      told_.push_back(std::move(news.text));
   }
+}
+
+// A changed cell may lack some of the joints.
+GivenJoints BagLog::given_of(const Scene& scene) const {
+  std::map<std::string, double> there = options_.joints;
+  const std::vector<std::string> names = joint_names(scene);
+  std::erase_if(there, [&](const auto& joint) {
+    return std::ranges::find(names, joint.first) == names.end();
+  });
+  return {scene, there};
 }
 
 // Messages do not move joints whose positions are given. Batches are numbered in the order of use.
 void BagLog::use(PoseBatch batch) {
   std::erase_if(batch.joints, [this](const JointSample& sample) {
-    heard_[sample.variable] = true;
-    return options_.joints.contains(scene_.variables[sample.variable].name);
+    const std::string& name = scene_->variables[sample.variable].name;
+    heard_.insert(name);
+    return options_.joints.contains(name);
   });
   if (batch.empty()) {
     ++topic_->empty;
     return;
   }
-  batch.sequence_number = ++sequence_[std::string(batch.source.view())];
-  waiting_.emplace(log_ns_, LoggedBatch{std::move(batch)});
-  if (!given_.empty()) waiting_.emplace(log_ns_, LoggedBatch{given_.at(log_ns_)});
+  const auto give_out = [this](PoseBatch decoded) {
+    decoded.sequence_number = ++sequence_[std::string(decoded.source.view())];
+    decoded.scene_revision = scene_->revision;
+    decoded_.push_back({std::move(decoded), log_ns_});
+  };
+  give_out(std::move(batch));
+  if (!given_.empty()) give_out(given_.at(log_ns_));
 }
 
 void BagLog::use(moveit::RawScene message) {
-  waiting_.emplace(
-      log_ns_, LoggedBatch{.batch = {},
-                           .scene = std::make_shared<const moveit::RawScene>(std::move(message))});
+  decoded_.push_back({.batch = {},
+                      .log_ns = log_ns_,
+                      .scene = std::make_shared<const moveit::RawScene>(std::move(message))});
 }
 
 void BagLog::use(RawSensorMessage message) {
-  waiting_.emplace(
-      log_ns_, LoggedBatch{.batch = {},
-                           .sensor = std::make_shared<const RawSensorMessage>(std::move(message))});
+  decoded_.push_back({.batch = {},
+                      .log_ns = log_ns_,
+                      .sensor = std::make_shared<const RawSensorMessage>(std::move(message))});
 }
 
 template <class IsListed>
 std::vector<std::string> BagLog::topics(const IsListed& is_listed) const {
   std::vector<std::string> there;
   for (const auto& [name, topic] : topics_) {
-    if (is_listed(topic.type))
-      there.push_back(fmt::format("{} ({}, {} messages)", name, topic.type, topic.messages));
+    if (is_listed(topic.of.type))
+      there.push_back(fmt::format("{} ({}, {} messages)", name, topic.of.type, topic.messages));
   }
   return there;
 }
@@ -153,7 +212,7 @@ std::string BagLog::nothing_of_use() const {
         "{} has nothing that moves this cell: its joint states are of joints that the cell's "
         "robots "
         "do not have: {}; theirs are {}",
-        path_.string(), fmt::join(joints, ", "), fmt::join(joint_names(scene_), ", "));
+        path_.string(), fmt::join(joints, ", "), fmt::join(joint_names(*scene_), ", "));
   }
   return fmt::format(
       "{} has nothing that moves this cell: no joint states of its robots and no transforms to its "
@@ -173,7 +232,7 @@ std::vector<std::string> BagLog::notes() const {
         notes.push_back(fmt::format("{} of {} {}", counted(count, "message"), topic_name, what));
     };
     const TopicCounts& counts = intake_.counts(*topic.number);
-    note(counts.undecodable, "did not decode as " + topic.type + ": left out");
+    note(counts.undecodable, "did not decode as " + topic.of.type + ": left out");
     note(topic.empty, "had no position of a joint of this cell");
     note(counts.unstamped, "had no stamp: the time of recording is used");
     note(counts.of_another_clock,
@@ -183,9 +242,9 @@ std::vector<std::string> BagLog::notes() const {
   notes.insert(notes.end(), told_.begin(), told_.end());
   for (const std::string& joint : intake_.joint_states().unknown_names()) {
     notes.push_back(fmt::format("joint '{}' of the bag is not in the cell: left out{}", joint,
-                                did_you_mean(joint, joint_names(scene_))));
+                                did_you_mean(joint, joint_names(*scene_))));
   }
-  note_unheard(scene_, heard_, options_.joints, notes);
+  note_unheard(*scene_, heard_, options_.joints, notes);
   for (const std::string& world : intake_.transforms().worlds()) {
     notes.push_back(fmt::format("frame '{}' is taken to be the cell's world", world));
   }

@@ -1,10 +1,13 @@
 // Converts the joint states and transforms of a bag to batches of the tick's inputs.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <memory>
 #include <optional>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -23,11 +26,15 @@ namespace clearance {
 //
 // A stamp of 0, or one more than 10 s off the recorder's clock, does not tell when a position held.
 // The time of recording is used instead.
+//
+// A message is decoded when it is given out, by the cell that is in force then. Time passes between
+// two messages as well, so that what falls silent is told as in the daemon.
 class BagLog final : public InputLog {
  public:
   BagLog(const std::filesystem::path& path, const Cell& cell, const InputLogOptions& options);
 
   [[nodiscard]] bool next(LoggedBatch& batch) override;
+  void change(const Cell& cell) override;
   [[nodiscard]] const std::string& error() const noexcept override;
   [[nodiscard]] bool readable() const noexcept override {
     return bag_->readable() && given_.error().empty();
@@ -39,14 +46,26 @@ class BagLog final : public InputLog {
 
  private:
   struct Topic {
-    std::string type;
+    BagTopic of;
     std::optional<std::uint32_t> number;  // the intake's number; nothing: not used
     std::uint64_t messages = 0;
     std::uint64_t empty = 0;  // joint states without a position of a joint of the cell
   };
 
+  // Of a topic that is used.
+  struct Message {
+    Topic* topic = nullptr;
+    std::int64_t log_ns = 0;
+    std::vector<std::byte> payload;
+  };
+
   void read_ahead();
-  void take(const BagMessage& message);
+  void keep(const BagMessage& message);
+  void choose(Topic& topic);
+  [[nodiscard]] bool let_time_pass(std::int64_t until_ns);
+  void take(const Message& message);
+  void settle();
+  [[nodiscard]] GivenJoints given_of(const Scene& scene) const;
   void use(PoseBatch batch);
   void use(moveit::RawScene message);
   void use(RawSensorMessage message);
@@ -54,20 +73,21 @@ class BagLog final : public InputLog {
   [[nodiscard]] std::vector<std::string> topics(const IsListed& is_listed) const;
   [[nodiscard]] std::string nothing_of_use() const;
 
-  const Scene& scene_;
+  const Scene* scene_;
   InputLogOptions options_;
   std::filesystem::path path_;
   std::unique_ptr<Bag> bag_;
   Intake intake_;
 
   std::map<std::string, Topic> topics_;  // by name
-  std::vector<bool> heard_;              // by variable
+  std::set<std::string> heard_;          // joints
   std::vector<std::string> told_;        // sentences about rare inputs and unused topics
   std::map<std::string, std::uint64_t, std::less<>> sequence_;  // by source
-  std::multimap<std::int64_t, LoggedBatch> waiting_;            // by log time; ties in file order
-  Topic* topic_ = nullptr;   // topic of the message that is being taken
-  std::int64_t log_ns_ = 0;  // of that message
-  std::int64_t read_to_ns_ = 0, last_ns_ = 0;
+  std::multimap<std::int64_t, Message> waiting_;                // by log time; ties in file order
+  std::deque<LoggedBatch> decoded_;
+  Topic* topic_ = nullptr;                     // topic of the message that was taken last
+  std::int64_t log_ns_ = 0;                    // the time that has come; never decreases
+  std::int64_t read_to_ns_ = 0, last_ns_ = 0;  // last_ns_: the time of that message
   GivenJoints given_;
   bool ended_ = false, given_out_ = false;
   std::string error_;

@@ -59,12 +59,12 @@ std::string read_joint_positions(const std::vector<std::string>& texts,
   return {};
 }
 
-void note_unheard(const Scene& scene, const std::vector<bool>& heard,
+void note_unheard(const Scene& scene, const std::set<std::string>& heard,
                   const std::map<std::string, double>& given, std::vector<std::string>& notes) {
   std::string names;
-  for (std::size_t i = 0; i < heard.size(); ++i) {
-    const std::string& name = scene.variables[i].name;
-    if (!heard[i] && !given.contains(name)) names += (names.empty() ? "" : ", ") + name;
+  for (const JointVariable& variable : scene.variables) {
+    const std::string& name = variable.name;
+    if (!heard.contains(name) && !given.contains(name)) names += (names.empty() ? "" : ", ") + name;
   }
   if (names.empty()) return;
   notes.push_back(fmt::format(

@@ -3,6 +3,7 @@
 
 #include <cstdint>
 #include <map>
+#include <set>
 #include <string>
 #include <vector>
 
@@ -34,9 +35,8 @@ class GivenJoints {
 // The names of all variables, as joint states name them.
 [[nodiscard]] std::vector<std::string> joint_names(const Scene& scene);
 
-// Adds a sentence about the joints that were neither heard (by variable) nor given, if there are
-// any.
-void note_unheard(const Scene& scene, const std::vector<bool>& heard,
+// Adds a sentence about the joints that were neither heard nor given, if there are any.
+void note_unheard(const Scene& scene, const std::set<std::string>& heard,
                   const std::map<std::string, double>& given, std::vector<std::string>& notes);
 
 }  // namespace clearance

@@ -1,6 +1,9 @@
 #include "monitor/recording/input_log.hpp"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <utility>
 
 #include "monitor/files/reader.hpp"
 #include "monitor/files/table.hpp"
@@ -37,6 +40,20 @@ bool is_joint_table(const std::filesystem::path& path) {
          std::ranges::find(columns, "object") == columns.end();
 }
 
+// A log that cannot be read with this cell.
+class RefusedLog final : public InputLog {
+ public:
+  explicit RefusedLog(std::string error) : error_(std::move(error)) {}
+  [[nodiscard]] bool next(LoggedBatch&) override { return false; }
+  [[nodiscard]] const std::string& error() const noexcept override { return error_; }
+  [[nodiscard]] bool readable() const noexcept override { return false; }
+  [[nodiscard]] double progress() const noexcept override { return 0.0; }
+  [[nodiscard]] std::vector<std::string> notes() const override { return {}; }
+
+ private:
+  std::string error_;
+};
+
 }  // namespace
 
 bool is_input_log(const std::filesystem::path& path) {
@@ -54,9 +71,17 @@ bool is_input_log(const std::filesystem::path& path) {
 
 std::unique_ptr<InputLog> open_input_log(const std::filesystem::path& path, const Cell& cell,
                                          const InputLogOptions& options) {
-  if (bag_format(path) == BagFormat::kOther) {
-    return std::make_unique<JointCsvLog>(path, cell.scene, options);
+  const bool is_table = bag_format(path) == BagFormat::kOther;
+  // Without the lists, a person that the cell states as absent would stay so.
+  if (!cell.ros.moveit.tracked_bodies.empty() && (is_table || !options.with_scenes)) {
+    return std::make_unique<RefusedLog>(fmt::format(
+        "{} cannot be used with this cell: 'tracked_bodies' of 'ros2' says that lists of bodies "
+        "change it, and {}; replay a bag that has the lists, or leave out 'tracked_bodies' and "
+        "state the 'id' of each person",
+        path.string(),
+        is_table ? "a table has none" : "a recording that is made of a log keeps one cell"));
   }
+  if (is_table) return std::make_unique<JointCsvLog>(path, cell.scene, options);
   return std::make_unique<BagLog>(path, cell, options);
 }
 

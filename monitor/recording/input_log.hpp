@@ -9,7 +9,9 @@
 #include <vector>
 
 #include "config/cell/cell.hpp"
+#include "config/scene/scene_map.hpp"
 #include "monitor/inputs/pose_batch.hpp"
+#include "monitor/inputs/scene_ids.hpp"
 
 namespace clearance {
 
@@ -27,6 +29,15 @@ struct LoggedBatch {
   // Likewise, a message of a sensor, or transforms that may place one.
   std::shared_ptr<const RawSensorMessage> sensor = {};
 };
+
+// The scene `now` follows `before`, as `map` says: a batch that was made for that one gets the ids
+// of the changed scene.
+inline void pass_on(const SceneMap& map, const Scene& before, const Scene& now, PoseBatch& batch) {
+  if (batch.scene_revision != before.revision) return;
+  batch.scene_revision = now.revision;
+  keep_mapped(map.objects_now, &PoseSample::object, 0, batch.samples);
+  keep_mapped(map.variables_now, &JointSample::variable, 0, batch.joints);
+}
 
 struct InputLogOptions {
   // The topics whose joint states are used. If empty, these are all topics named joint_states, in
@@ -48,6 +59,9 @@ class InputLog {
   // Reads the next batch; log times never decrease. Returns false at the end, or where the log is
   // damaged: error() is then not empty.
   [[nodiscard]] virtual bool next(LoggedBatch& batch) = 0;
+  // A message of the log has changed the cell: what follows is read by the names of this one, which
+  // must outlive the log. Batches state the cell whose ids they have.
+  virtual void change(const Cell&) {}
   // A sentence with file, place and reason; empty for a sound log.
   [[nodiscard]] virtual const std::string& error() const noexcept = 0;
   // True: the batches before the error are sound. False: the log cannot be read at all.
@@ -68,7 +82,8 @@ class InputLog {
 // table with other columns than a pose log. False for a file that cannot be read.
 [[nodiscard]] bool is_input_log(const std::filesystem::path& path);
 
-// The cell must outlive the log. Never null.
+// The cell must outlive the log. Never null. A cell with `tracked_bodies` needs a bag and
+// `with_scenes`: otherwise the log has an error and no batch.
 [[nodiscard]] std::unique_ptr<InputLog> open_input_log(const std::filesystem::path& path,
                                                        const Cell& cell,
                                                        const InputLogOptions& options = {});

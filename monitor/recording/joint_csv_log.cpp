@@ -22,7 +22,6 @@ JointCsvLog::JointCsvLog(const std::filesystem::path& file, const Scene& scene,
       header_(csv_column_names(file)),
       given_(scene, options.joints),
       given_positions_(options.joints),
-      heard_(scene.variables.size()),
       slow_(scene) {
   error_ = given_.error();
   choose_columns();
@@ -52,7 +51,7 @@ void JointCsvLog::choose_columns() {
       if (column != kTime && !velocity) left_out_.push_back(column);
       continue;
     }
-    heard_[*variable] = true;
+    heard_.insert(column);
     if (given_positions_.contains(column)) continue;
     joints_.push_back({*variable, columns_.size(), std::nullopt});
     columns_.push_back(column);

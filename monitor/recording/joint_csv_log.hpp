@@ -54,7 +54,7 @@ class JointCsvLog final : public InputLog {
   std::vector<std::string> left_out_;
   GivenJoints given_;
   std::map<std::string, double> given_positions_;
-  std::vector<bool> heard_;  // by variable
+  std::set<std::string> heard_;  // joints
   std::optional<CsvTable> table_;
   std::optional<LoggedBatch> given_batch_;
   SlowInputs slow_;

@@ -5,7 +5,10 @@
 
 #include <algorithm>
 #include <iterator>
+#include <limits>
+#include <map>
 #include <numeric>
+#include <string_view>
 #include <utility>
 
 #include "config/scene/pairs_between.hpp"
@@ -17,6 +20,8 @@
 namespace clearance {
 namespace {
 
+// Of an object that is awaited, before the first tick of its scene.
+constexpr std::int64_t kNotYet = std::numeric_limits<std::int64_t>::max();
 // A recording ends at most this long after the driver of a robot, ns.
 constexpr std::int64_t kMostLateEnd = 1'000'000'000;
 
@@ -45,7 +50,9 @@ std::string subject_of(const std::optional<ExpectedDistance>& distance, const st
 
 // A name that does not exist is an error: an expectation about it could never fail.
 Expectations::Expectations(const Scene& scene, const Expected& expected)
-    : scene_(&scene), allow_unknown_(expected.allow_unknown) {
+    : scene_(&scene),
+      allow_unknown_(expected.allow_unknown),
+      awaited_ns_(scene.objects.size(), kNotYet) {
   for (const ExpectedDistance& distance : expected.distances)
     expectations_.emplace_back().distance = distance;
   for (const std::string& name : expected.no_zone) expectations_.emplace_back().zone = name;
@@ -82,7 +89,6 @@ void Expectations::rest_on(Expectation& expectation) {
   for (std::uint32_t i = 0; i < is_part.size(); ++i) {
     if (is_part[i] && !scene_->objects[i].fixed) expectation.objects.push_back(i);
   }
-  expectation.begun = false;
 }
 
 std::string Expectations::unknown_name(const Expectation& expectation) const {
@@ -104,6 +110,14 @@ std::string Expectations::unknown_name(const Expectation& expectation) const {
 }
 
 void Expectations::change(const Scene& scene) {
+  std::map<std::string_view, std::optional<std::int64_t>> before;
+  for (std::size_t i = 0; i < awaited_ns_.size(); ++i)
+    before.emplace(scene_->objects[i].name, awaited_ns_[i]);
+  awaited_ns_.clear();
+  for (const Object& object : scene.objects) {
+    const auto known = before.find(object.name);
+    awaited_ns_.push_back(known == before.end() ? kNotYet : known->second);
+  }
   scene_ = &scene;
   late_.clear();
   for (Expectation& expectation : expectations_) {
@@ -112,13 +126,21 @@ void Expectations::change(const Scene& scene) {
   }
 }
 
-// An object that is contradicted is not late: something of it was heard.
+// An object that is contradicted is not late: something of it was heard. One that a change has made
+// unknown is not late either: no driver has ended.
 void Expectations::note_late(const Report& report, const Monitor& monitor) {
   late_.resize(scene_->objects.size());
+  lost_.resize(scene_->objects.size());
   refused_ = std::accumulate(report.rejected.begin(), report.rejected.end(), std::uint64_t{0});
   for (std::uint32_t i = 0; i < scene_->objects.size(); ++i) {
     const InputAge input = monitor.input_age(i);
-    if (scene_->objects[i].fixed || input.absent || !input.stale || input.contradicted) {
+    const bool is_there = scene_->objects[i].fixed || input.absent;
+    const bool is_on_time = !input.stale || input.contradicted;
+    auto& awaited_ns = awaited_ns_[i];
+    if (awaited_ns) awaited_ns = std::min(*awaited_ns, report.now_ns);
+    if (is_there || (input.age_ns >= 0 && is_on_time)) awaited_ns.reset();
+    lost_[i] = !is_there && !awaited_ns && input.age_ns < 0;
+    if (is_there || is_on_time || lost_[i] || awaited_ns) {
       late_[i].reset();
     } else if (!late_[i]) {
       late_[i] = Lateness{report.now_ns, refused_};
@@ -130,8 +152,18 @@ void Expectations::note_late(const Report& report, const Monitor& monitor) {
 bool Expectations::begins(const Expectation& expectation, const Monitor& monitor) const {
   return std::ranges::all_of(expectation.objects, [&](std::uint32_t object) {
     const InputAge input = monitor.input_age(object);
-    return input.absent || (input.age_ns >= 0 && !late_[object]);
+    return input.absent || (input.age_ns >= 0 && !late_[object] && !awaited_ns_[object]);
   });
+}
+
+bool Expectations::is_awaited(const Expectation& expectation) const {
+  return std::ranges::any_of(expectation.objects,
+                             [&](std::uint32_t object) { return awaited_ns_[object].has_value(); });
+}
+
+bool Expectations::has_awaited_object(std::uint32_t pair) const {
+  const ObjectPair& objects = scene_->pairs[pair];
+  return awaited_ns_[objects.first] || awaited_ns_[objects.second];
 }
 
 bool Expectations::is_late(const Expectation& expectation) const {
@@ -189,7 +221,9 @@ void Expectations::doubt(Expectation& expectation, Broken broken) const {
   std::vector<std::uint32_t> late;
   std::ranges::copy_if(expectation.objects, std::back_inserter(late),
                        [&](std::uint32_t object) { return late_[object].has_value(); });
-  if (late.empty()) {
+  const bool is_lost =
+      std::ranges::any_of(expectation.objects, [&](std::uint32_t object) { return lost_[object]; });
+  if (late.empty() || is_lost) {
     if (!expectation.first_doubt) expectation.first_doubt = std::move(broken);
     ++expectation.doubtful;
     return;
@@ -256,11 +290,29 @@ std::vector<Expectations::Broken> Expectations::finish(const Monitor& monitor,
                                       : fmt::format("{}: no tick could be judged, since the "
                                                     "recording never tells where {} is",
                                                     subject, one_of(never))});
+    } else if (auto awaited = never_known(expectation, last_ns)) {
+      broken.push_back(*std::move(awaited));
     } else {
       note_ticks(expectation);
     }
   }
   return broken;
+}
+
+std::optional<Expectations::Broken> Expectations::never_known(const Expectation& expectation,
+                                                              std::int64_t last_ns) {
+  for (const std::uint32_t i : expectation.objects) {
+    if (!awaited_ns_[i]) continue;
+    const std::int64_t awaited_ns = last_ns - *awaited_ns_[i];
+    std::string what = fmt::format(
+        "{}: the pairs of '{}' could not be judged, since a change brought it {:.3f} s before the "
+        "end and the recording does not tell where it is",
+        subject_of(expectation.distance, expectation.zone), scene_->objects[i].name,
+        seconds(awaited_ns));
+    if (awaited_ns > kMostLateEnd) return Broken{0, last_ns, std::move(what)};
+    notes_.push_back(std::move(what));
+  }
+  return std::nullopt;
 }
 
 void Expectations::note_ticks(const Expectation& expectation) {

@@ -27,6 +27,10 @@ struct Expected {
 // of these pairs are known and on time; before, only what is certain of known pairs counts. From
 // then on a tick is doubtful if one of its pairs is unknown, or late and not certainly too near.
 // More doubtful ticks than allowed break it. A pair whose contact is as allowed may be nearer.
+//
+// A change of the scene does not end this. Objects with new names are awaited: until they are known
+// and on time first, only what is certain of their pairs counts. One that is awaited for more than
+// 1 s at the end breaks the expectation.
 class Expectations {
  public:
   // Names that the scene does not have are told in error().
@@ -45,8 +49,8 @@ class Expectations {
   // broken for the first time.
   [[nodiscard]] std::vector<Broken> check(const Report& report, const Monitor& monitor, bool judge);
 
-  // Ticks are of another scene from now on, which outlives this. Expectations begin again once
-  // their objects are known. A zone or an object that it lacks is not judged.
+  // Ticks are of another scene from now on, which outlives this. Objects correspond by name. A zone
+  // or an object that it lacks is not judged.
   void change(const Scene& scene);
 
   // Call this after the recording's last tick. Returns what was doubtful too often, and what could
@@ -102,6 +106,11 @@ class Expectations {
   [[nodiscard]] bool begins(const Expectation& expectation, const Monitor& monitor) const;
   [[nodiscard]] bool is_late(const Expectation& expectation) const;
   [[nodiscard]] bool has_late_object(std::uint32_t pair) const;
+  [[nodiscard]] bool is_awaited(const Expectation& expectation) const;
+  [[nodiscard]] bool has_awaited_object(std::uint32_t pair) const;
+  // Returns that an object of it was awaited for too long at the end.
+  [[nodiscard]] std::optional<Broken> never_known(const Expectation& expectation,
+                                                  std::int64_t last_ns);
   // Returns the object that has been late for longest, or nothing if one of these is on time.
   [[nodiscard]] std::optional<std::uint32_t> longest_late(
       const std::vector<std::uint32_t>& objects) const;
@@ -112,7 +121,10 @@ class Expectations {
   // Without unknown pairs, and of late ones what is certain.
   [[nodiscard]] Found found_certain(const Expectation& expectation, const Tick& tick) const;
   [[nodiscard]] Found entered(const Expectation& expectation, const Tick& tick) const;
-  [[nodiscard]] Found entered_by_known(const Expectation& expectation, const Tick& tick) const;
+  // By a pair without an awaited object. `certain`: by a known pair, and of a late one by its upper
+  // bound.
+  [[nodiscard]] Found entered_by_pair(const Expectation& expectation, const Tick& tick,
+                                      bool certain) const;
   [[nodiscard]] Found certainly_near(const Expectation& expectation, const Tick& tick) const;
   [[nodiscard]] Found too_near(const Expectation& expectation, const Tick& tick) const;
   [[nodiscard]] Found swept_too_near(const Expectation& expectation, const Tick& tick) const;
@@ -124,8 +136,11 @@ class Expectations {
   std::string error_;
   std::vector<std::string> notes_;
   std::optional<std::int64_t> first_ns_;
-  std::vector<std::optional<Lateness>> late_;  // by object, in this tick
-  std::uint64_t refused_ = 0;                  // samples of all objects until now
+  // By object: since when it waits to be known and on time for the first time; nothing: it was.
+  std::vector<std::optional<std::int64_t>> awaited_ns_;
+  std::vector<std::optional<Lateness>> late_;  // by object, in this tick; none that is awaited
+  std::vector<bool> lost_;     // by object: no value of it is in use any more, in this tick
+  std::uint64_t refused_ = 0;  // samples of all objects until now
 };
 
 }  // namespace clearance

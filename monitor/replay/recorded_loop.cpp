@@ -155,7 +155,6 @@ bool RecordedLoop::follow_moveit(const TickInput& input) {
 }
 
 void RecordedLoop::use(const PoseBatch& batch) {
-  if (moveit_ != nullptr) return state_->use(batch, from_first_ ? &*from_first_ : nullptr);
   if (state_->use(batch)) {
     if (!unclear_.empty()) unclear_.erase(batch.source.c_str());
     return;
@@ -233,7 +232,6 @@ void RecordedLoop::succeed() {
   if (!is_same) exchange_frames_of(*cell_);
   from_ = next_->from;
   next_ = nullptr;
-  if (moveit_ != nullptr) from_first_ = scene_map(history_.first().scene, cell_->scene);
 }
 
 }  // namespace clearance

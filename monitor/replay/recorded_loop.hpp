@@ -24,8 +24,8 @@ namespace clearance {
 class RecordedLoop {
  public:
   // The history must outlive this, and `moveit`, too. It is null unless messages of MoveIt in a log
-  // change the scene; batches then have the ids of the first cell. A message changes the scene as a
-  // command does that the daemon gets between this tick and the next.
+  // change the scene. A message changes it as a command does that the daemon gets between this tick
+  // and the next.
   explicit RecordedLoop(SceneHistory& history, MoveItChanges* moveit = nullptr);
 
   // Null, and error() says why: the cell of a change cannot be read. The report is valid until the
@@ -73,7 +73,6 @@ class RecordedLoop {
 
   SceneHistory& history_;
   MoveItChanges* moveit_;
-  std::optional<SceneMap> from_first_;  // to the present scene, once MoveIt has changed it
   const Cell* cell_ = nullptr;
   std::unique_ptr<Sensors> sensors_;
   std::optional<FrameNames> names_;  // of recorded frames

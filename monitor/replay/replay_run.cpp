@@ -142,6 +142,7 @@ void ReplayRun::follow(const Scene& scene) {
 // Checks by name continue in the new scene.
 void ReplayRun::change_scene(const TickInput& input, const Report& report) {
   has_changed_ = true;
+  feed_.change(*scene_, loop_.cell());
   follow(loop_.cell().scene);
   expectations_.change(*scene_);
   if (reference_) reference_->change(*scene_);

@@ -8,6 +8,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "monitor/intake/scene_keeper.hpp"
+
 namespace clearance {
 namespace {
 
@@ -54,6 +56,14 @@ bool TickFeed::next(TickInput& tick) {
   tick.complete = true;
   if (by_report_) return next_by_report(tick);
   return tick_hz_ > 0.0 ? next_by_rate(tick) : next_by_time(tick);
+}
+
+// The cells of a recording are known beforehand (read_catalogue).
+void TickFeed::change(const Scene& before, const Cell& now) {
+  if (!log_) return;
+  const SceneMap map = scene_map(before, now.scene);
+  for (LoggedBatch& waiting : waiting_) pass_on(map, before, now.scene, waiting.batch);
+  log_->change(now);
 }
 
 bool TickFeed::read_one() {
@@ -262,8 +272,10 @@ bool TickFeed::next_by_rate(TickInput& tick) {
 // Moves all batches up to the tick's time into the tick, in the order in which they came.
 void TickFeed::use_until_now(TickInput& tick) {
   while (!waiting_.empty() && waiting_.front().log_ns <= tick.time.now_ns) {
-    last_batch_ns_ = waiting_.front().log_ns;
-    if (auto& scene = waiting_.front().scene) {
+    auto& scene = waiting_.front().scene;
+    const bool is_silence = scene && scene->cdr.empty();
+    if (!is_silence) last_batch_ns_ = waiting_.front().log_ns;
+    if (scene) {
       tick.scenes.push_back(std::move(scene));
       waiting_.pop_front();
       continue;

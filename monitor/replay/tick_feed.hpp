@@ -67,6 +67,10 @@ class TickFeed {
   // The next tick; its content is valid until the next call. False at the end or the damage.
   [[nodiscard]] bool next(TickInput& tick);
 
+  // A message of the log has changed the scene, and the next tick is of this cell, which must
+  // outlive this.
+  void change(const Scene& before, const Cell& now);
+
   [[nodiscard]] const ObjectMap& objects() const noexcept { return objects_; }
   // The recording's ticks, and what was read of them; null: a log of another program.
   [[nodiscard]] const RecordedRun* run() const noexcept { return run_.get(); }

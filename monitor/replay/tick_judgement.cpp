@@ -27,7 +27,7 @@ bool counts(const PairReport& pair, const Report& report) {
 }  // namespace
 
 Expectations::Found Expectations::found(const Expectation& expectation, const Tick& tick) const {
-  if (is_late(expectation)) {
+  if (is_late(expectation) || is_awaited(expectation)) {
     if (Found certain = found_certain(expectation, tick)) return certain;
   }
   return expectation.distance ? too_near(expectation, tick) : entered(expectation, tick);
@@ -36,12 +36,13 @@ Expectations::Found Expectations::found(const Expectation& expectation, const Ti
 Expectations::Found Expectations::found_certain(const Expectation& expectation,
                                                 const Tick& tick) const {
   return expectation.distance ? certainly_near(expectation, tick)
-                              : entered_by_known(expectation, tick);
+                              : entered_by_pair(expectation, tick, true);
 }
 
 // A zone is active by the distance now, or by what may have happened between two ticks.
 Expectations::Found Expectations::entered(const Expectation& expectation, const Tick& tick) const {
   if (!expectation.index || !tick.report.zones[*expectation.index].active) return std::nullopt;
+  if (is_awaited(expectation)) return entered_by_pair(expectation, tick, false);
   const Zone& zone = scene_->zones[*expectation.index];
   const ZoneReport& in_tick = tick.report.zones[*expectation.index];
   const bool between =
@@ -58,19 +59,21 @@ Expectations::Found Expectations::entered(const Expectation& expectation, const 
 
 // The threshold of a zone with `separation` is the tick's. The pair that the tick names may have a
 // late object and hide another one that is too near.
-Expectations::Found Expectations::entered_by_known(const Expectation& expectation,
-                                                   const Tick& tick) const {
+Expectations::Found Expectations::entered_by_pair(const Expectation& expectation, const Tick& tick,
+                                                  bool certain) const {
   if (!expectation.index || !tick.report.zones[*expectation.index].active) return std::nullopt;
   const Zone& zone = scene_->zones[*expectation.index];
   if (zone.separation) {
     for (const PairSeparation& pair : tick.report.separated_pairs) {
-      if (pair.zone != *expectation.index || has_late_object(pair.pair) ||
+      if (pair.zone != *expectation.index || has_awaited_object(pair.pair) ||
           may_touch(tick.report, pair.pair) || !(pair.remaining < 0.0))
         continue;
-      return Finding{
-          fmt::format("zone '{}' is active: {} has a clearance of {}, less than its "
-                      "protective separation distance",
-                      zone.name, pair_name(*scene_, pair.pair), metres(pair.clearance))};
+      if (certain && (has_late_object(pair.pair) || !is_known(tick.monitor.pair(pair.pair).status)))
+        continue;
+      return Finding{fmt::format("zone '{}' is active: {} has a clearance of {}, less than its "
+                                 "protective separation distance",
+                                 zone.name, pair_name(*scene_, pair.pair), metres(pair.clearance)),
+                     certain};
     }
     return std::nullopt;
   }
@@ -79,14 +82,17 @@ Expectations::Found Expectations::entered_by_known(const Expectation& expectatio
     const ObjectPair& objects = scene_->pairs[p];
     const double margins =
         scene_->objects[objects.first].margin + scene_->objects[objects.second].margin;
-    const bool late = has_late_object(p);
-    const double decides = late ? pair.upper : std::min(pair.lower, pair.swept_lower);
-    if (!counts(pair, tick.report) || !is_known(pair.status) ||
-        !(decides - margins < zone.enter_below))
-      continue;
-    return Finding{fmt::format(
-        "zone '{}' is active: {} has a clearance of {} (its {} bound less both margins)", zone.name,
-        pair_name(*scene_, p), metres(decides - margins), late ? "upper" : "lower")};
+    const bool awaited = has_awaited_object(p);
+    const bool by_upper = certain && (awaited || has_late_object(p));
+    const double decides = by_upper ? pair.upper : std::min(pair.lower, pair.swept_lower);
+    const bool is_open = certain ? !is_known(pair.status) : awaited;
+    if (!counts(pair, tick.report) || is_open || !(decides - margins < zone.enter_below)) continue;
+    return Finding{
+        fmt::format(
+            "zone '{}' is active: {} has a clearance of {} (its {} bound less both margins)",
+            zone.name, pair_name(*scene_, p), metres(decides - margins),
+            by_upper ? "upper" : "lower"),
+        certain};
   }
   return std::nullopt;
 }
@@ -115,7 +121,7 @@ Expectations::Found Expectations::too_near(const Expectation& expectation, const
   for (const std::uint32_t p : expectation.pairs) {
     // Bounds that only certify the minimum may be lower than needed here.
     const PairReport pair = tick.monitor.pair_at_least(p, expected);
-    if (!(pair.lower < expected) || !counts(pair, tick.report)) continue;
+    if (!(pair.lower < expected) || !counts(pair, tick.report) || has_awaited_object(p)) continue;
     const bool certain = is_known(pair.status) && !has_late_object(p);
     if (!nearest || certain > is_certain ||
         (certain == is_certain && pair.lower < nearest->lower)) {
@@ -144,7 +150,8 @@ Expectations::Found Expectations::swept_too_near(const Expectation& expectation,
   Found doubtful;
   for (const std::uint32_t p : expectation.pairs) {
     const PairReport pair = tick.monitor.pair(p);
-    if (pair.swept_lower >= expected || !counts(pair, tick.report)) continue;
+    if (pair.swept_lower >= expected || !counts(pair, tick.report) || has_awaited_object(p))
+      continue;
     // More expensive than the tick's own bound, hence only where that one does not suffice.
     const SweptBounds swept = tick.monitor.sweep(p, expected);
     if (swept.lower >= expected) continue;

@@ -288,6 +288,35 @@ TEST_F(BagLogTest, MistakesInAJointTableAreToldByLine) {
   EXPECT_THAT(error_of("elbow\n1\n"), mistake_at("log.csv:1", "'t_ns'"));
 }
 
+// The cell changes while the log is read: the joints of another id are those of the person then.
+TEST_F(BagLogTest, MessagesAreReadByTheCellThatIsInForceThen) {
+  const auto cell_of = [&](const std::string& id) {
+    return read_good(
+        "name: test\nunits: {length: m, angle: rad}\nros2: {world_frame: map, tracked_bodies: "
+        "true}\nrobots: [{name: one, person: {stature: 1.7, error: 0, id: " +
+            id +
+            "}, groups: [people]}]\n"
+            "objects: [{name: post, fixed: true, sphere: {radius: 0.1}}]\n"
+            "pairs: [{between: [people, post]}]\n",
+        folder / "cell.yaml");
+  };
+  const Cell before = cell_of("b1"), after = cell_of("b2");
+  write_mcap_bag(folder / "bag.mcap",
+                 {joint_state(kT, kT, {{"waist_b1", "waist_b2"}, {0.1, 0.2}}),
+                  joint_state(kT + 1, kT + 1, {{"waist_b1", "waist_b2"}, {0.3, 0.4}})});
+  const auto log = open_input_log(folder / "bag.mcap", before, {.with_scenes = true});
+  LoggedBatch batch;
+  ASSERT_TRUE(log->next(batch));
+  EXPECT_EQ(batch.batch.scene_revision, before.scene.revision);
+  ASSERT_EQ(batch.batch.joints.size(), 1u);
+  EXPECT_EQ(batch.batch.joints[0].position, 0.1);
+  log->change(after);
+  ASSERT_TRUE(log->next(batch));
+  EXPECT_EQ(batch.batch.scene_revision, after.scene.revision);
+  ASSERT_EQ(batch.batch.joints.size(), 1u);
+  EXPECT_EQ(batch.batch.joints[0].position, 0.4);
+}
+
 TEST_F(BagLogTest, RecordingsOfOursAndPoseLogsAreNoInputLogs) {
   write_text(folder / "poses.csv", "t_ns,object,px,py,pz,qw,qx,qy,qz\n");
   EXPECT_FALSE(is_input_log(folder / "poses.csv"));
