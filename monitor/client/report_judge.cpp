@@ -26,7 +26,8 @@ ReportError ReportJudge::refuse(const Message& message, std::int64_t at_ns) noex
   return error;
 }
 
-// Another source is a fault of reports of a daemon on its own. Of partners, PartnerMerge decides
+// Another source is a fault while a daemon on its own is heard: one that starts again comes after a
+// silence. Of partners, PartnerMerge decides
 // which report takes the place of which; other messages do not name the partner who leads.
 template <class Message>
 ReportCheck ReportJudge::check(const Message& message, std::int64_t realtime_ns,
@@ -46,7 +47,8 @@ ReportCheck ReportJudge::check(const Message& message, std::int64_t realtime_ns,
                 : is_replay || found.age_ns > limit_ns_ ? kOld
                                                         : kGood;
   if (found.error != kGood) {
-    note(found.error, found.error == kOtherSource && is_alone, at_ns);
+    const bool is_masquerade = found.error == kOtherSource && is_alone && at_ns <= good_until_ns_;
+    note(found.error, is_masquerade, at_ns);
   } else {
     failed_ = kGood;
     good_until_ns_ = at_ns + limit_ns_ - std::max<std::int64_t>(0, found.age_ns);

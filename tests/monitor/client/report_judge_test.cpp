@@ -321,6 +321,19 @@ TEST_F(Channel, IsNotHeldByWhatComesTooLate) {
   }
 }
 
+// After a silence, another number is a daemon that starts again; beside one it is a masquerade.
+TEST_F(Channel, IsNotHeldByADaemonThatStartsAgain) {
+  begin();
+  for (std::uint64_t daemon = 1; daemon <= 5; ++daemon) {
+    now += 3 * kPeriod;
+    EXPECT_EQ(hear(report(kDaemon + daemon)), kOtherSource);
+    EXPECT_EQ(hear(report(kDaemon + daemon)), kGood);
+    EXPECT_EQ(judge.error(now), kGood);
+  }
+  for (std::uint64_t daemon = 6; daemon <= 7; ++daemon)
+    EXPECT_EQ(hear(report(kDaemon + daemon)), kOtherSource);
+  EXPECT_TRUE(judge.is_held());
+}
 // The time that a report counts begins when it was published, not when it came.
 TEST_F(Channel, CountsFromTheTimeOfPublishingAndByThePeriodThatTheClientStates) {
   begin();

@@ -113,8 +113,9 @@ void record_joints(const Cell& cell, const std::filesystem::path& file) {
               ? std::vector{joint(0, std::sin(0.01 * tick), stamp), joint(1, 0.002 * tick, stamp)}
               : std::vector{joint(2, 0.1, stamp)};
       if (random.chance(0.1)) sent.push_back(joint(JointNames::kUnknown, 1.0, stamp));
-      if (random.chance(0.1))
-        sent.push_back(joint(1, std::numeric_limits<double>::infinity(), stamp));
+      const double infinite = std::numeric_limits<double>::infinity();
+      if (random.chance(0.1) && source == 0) sent[1].position = infinite;
+      if (random.chance(0.1) && source == 1) sent.push_back(joint(1, infinite, stamp));
       PoseBatch batch = batch_of(source == 0 ? "arm" : "gripper", ++sequence[source], sent);
       recorder.poses(batch);
       uses.push_back({batch.source, batch.sequence_number});
