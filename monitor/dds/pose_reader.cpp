@@ -109,6 +109,7 @@ void PoseReader::change(const Cell& cell) {
   topics_ = &cell.topics;
   intake_.change(cell);
   ros_.stand();
+  wait_.wake();
 }
 
 // Cyclone copies the listener and the filter. The objects to which they point are members of this
