@@ -1,4 +1,4 @@
-// What a change edits, as a person names it in the path of a mistake.
+// Names the entry that a change edits, for the path of a mistake.
 #pragma once
 
 #include <cstddef>

@@ -17,7 +17,7 @@ inline constexpr std::size_t kLongestBodyId = 32;
   });
 }
 
-// What the names of a person's joints and of its frame end with. Without an id, no body has it.
+// The names of a person's joints and of its frame end with it. Without an id, no body has it.
 [[nodiscard]] inline std::string body_name(const std::string& id, const std::string& robot) {
   return id.empty() ? robot + "?" : id;
 }

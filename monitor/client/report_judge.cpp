@@ -27,8 +27,7 @@ ReportError ReportJudge::refuse(const Message& message, std::int64_t at_ns) noex
 }
 
 // Another source is a fault while a daemon on its own is heard: one that starts again comes after a
-// silence. Of partners, PartnerMerge decides
-// which report takes the place of which; other messages do not name the partner who leads.
+// silence. Of partners, PartnerMerge chooses the report; other messages do not name who leads.
 template <class Message>
 ReportCheck ReportJudge::check(const Message& message, std::int64_t realtime_ns,
                                std::int64_t at_ns) noexcept {
@@ -70,7 +69,7 @@ void ReportJudge::acknowledge() noexcept {
   good_until_ns_ = fault_ns_ = 0;
 }
 
-// What comes too late says nothing about the channel, so it does not hold.
+// A message that comes too late says nothing about the channel, so it does not hold.
 void ReportJudge::note(ReportError error, bool is_faulty, std::int64_t at_ns) noexcept {
   failed_ = error;
   failed_ns_ = at_ns;

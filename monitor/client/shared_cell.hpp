@@ -62,7 +62,7 @@ class SharedCell {
   // The shares in the order of the cell, as they are in the last report.
   [[nodiscard]] const std::vector<ShareCheck>& shares() const noexcept { return checks_; }
   [[nodiscard]] bool is_whole() const noexcept;
-  // As those of Stream: of the shares, and kShare if one is not whole.
+  // Judgement of all shares, as Stream has it of one; kShare if one is not whole.
   [[nodiscard]] bool fail_safe() const noexcept { return reason() != ReportError::kGood; }
   [[nodiscard]] ReportError reason() const noexcept;
   void acknowledge() noexcept;

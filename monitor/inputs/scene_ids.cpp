@@ -24,17 +24,12 @@ bool SceneIds::append(const PoseBatch& batch, std::vector<PoseSample>& poses,
       batch.scene_revision == 0 ? !has_changed_ : batch.scene_revision == revision_;
   const auto* const before = in_force ? nullptr : former_.find(batch.scene_revision);
   if (!in_force && before == nullptr) return false;
-  if (!batch.empty()) append(batch, before == nullptr ? nullptr : &before->kept, poses, joints);
-  return true;
-}
-
-void SceneIds::append(const PoseBatch& batch, const SceneMap* to_ids,
-                      std::vector<PoseSample>& poses, std::vector<JointSample>& joints) noexcept {
   const std::size_t first_pose = poses.size(), first_joint = joints.size();
-  sources_.append(batch, poses, joints);
-  if (to_ids == nullptr) return;
-  keep_mapped(to_ids->objects_now, &PoseSample::object, first_pose, poses);
-  keep_mapped(to_ids->variables_now, &JointSample::variable, first_joint, joints);
+  if (!batch.empty()) sources_.append(batch, poses, joints);
+  if (before == nullptr) return true;
+  keep_mapped(before->kept.objects_now, &PoseSample::object, first_pose, poses);
+  keep_mapped(before->kept.variables_now, &JointSample::variable, first_joint, joints);
+  return true;
 }
 
 void SceneIds::save_former(StateWriter& out) const {

@@ -47,11 +47,6 @@ class SceneIds {
   // without a revision (0) is one of these, since it does not say which scene's ids it has.
   [[nodiscard]] bool append(const PoseBatch& batch, std::vector<PoseSample>& poses,
                             std::vector<JointSample>& joints) noexcept;
-  // Appends the samples of a batch, whose ids `to_ids` leads to those of the scene in force. Null:
-  // it has these.
-  void append(const PoseBatch& batch, const SceneMap* to_ids, std::vector<PoseSample>& poses,
-              std::vector<JointSample>& joints) noexcept;
-
   // The scene of this revision follows the one in force. `map` is that of the two, and is exchanged
   // for one that is no longer needed. Nothing changes if both are the same scene.
   void change(std::uint64_t revision, SceneMap& map) noexcept;

@@ -44,7 +44,8 @@ class SimulatedTime {
   // kept counts as older than it is.
   [[nodiscard]] std::int64_t at(std::int64_t sent_ns) const noexcept;
 
-  // How much of it passes in so much true time, at the speed of the last two messages, rounded up.
+  // Returns the simulated time that passes in a true time, by the speed of the last two messages,
+  // rounded up, ns.
   [[nodiscard]] std::int64_t passes_in(std::int64_t true_ns) const noexcept;
 
   // The time of the coming tick: later than that of the tick before, unless an unknown time has

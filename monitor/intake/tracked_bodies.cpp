@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <limits>
+#include <set>
+#include <string_view>
 
 namespace clearance {
 
@@ -46,11 +48,11 @@ bool TrackedBodies::is_one_silent(const Now& now) const noexcept {
 // A body that several trackers see counts once. An id that stands twice in one list is of two.
 std::vector<std::string> TrackedBodies::bodies_of_all() const {
   std::vector<std::string> all;
+  std::set<std::string_view> of_others;
   for (const auto& [writer, tracker] : trackers_) {
-    const auto known = static_cast<std::ptrdiff_t>(all.size());
     for (const std::string& body : tracker.bodies)
-      if (std::find(all.begin(), all.begin() + known, body) == all.begin() + known)
-        all.push_back(body);
+      if (!of_others.contains(body)) all.push_back(body);
+    of_others.insert(tracker.bodies.begin(), tracker.bodies.end());
   }
   return all;
 }

@@ -9,7 +9,7 @@
 namespace clearance {
 namespace {
 
-// Of a person of the cell by the list. Without a value: absent. The id of a body: there, with this
+// State of a person by the list. Without a value: absent. The id of a body: there, with this
 // body. Empty: there, and nothing says where.
 using State = std::optional<std::string>;
 

@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kMostWaiting = 1 << 16;
 // 2^62 ns, a time in the year 2116.
 constexpr std::int64_t kLastTimeNs = std::int64_t{1} << 62;
-// What is silent for this long after a message stays silent until the next one, ns.
+// Time passes step by step for so long after a message, ns: whoever is silent longer stays silent.
 constexpr std::int64_t kSilenceNs = 10'000'000'000;
 constexpr std::int64_t kLeastPatienceNs = 1'000'000;
 constexpr std::string_view kJointStateType = "sensor_msgs/msg/JointState";

@@ -52,7 +52,7 @@ class BagLog final : public InputLog {
     std::uint64_t empty = 0;  // joint states without a position of a joint of the cell
   };
 
-  // Of a topic that is used.
+  // A message of a topic that is used.
   struct Message {
     Topic* topic = nullptr;
     std::int64_t log_ns = 0;

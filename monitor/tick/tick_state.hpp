@@ -16,7 +16,6 @@
 #include <span>
 #include <vector>
 
-#include "config/scene/scene_map.hpp"
 #include "monitor/inputs/scene_ids.hpp"
 #include "monitor/tick/frame_exchange.hpp"
 #include "monitor/tick/joined_state.hpp"
@@ -56,10 +55,6 @@ class TickState {
   // not used.
   [[nodiscard]] bool use(const PoseBatch& batch) noexcept {
     return ids_.append(batch, samples_, joints_);
-  }
-  // The next tick uses the samples of this batch, whose ids `to_ids` leads to those of the scene.
-  void use(const PoseBatch& batch, const SceneMap* to_ids) noexcept {
-    ids_.append(batch, to_ids, samples_, joints_);
   }
   [[nodiscard]] std::span<const PoseSample> samples() const noexcept { return samples_; }
   [[nodiscard]] std::span<const JointSample> joints() const noexcept { return joints_; }

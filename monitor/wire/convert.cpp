@@ -261,20 +261,25 @@ void from_wire(const clearance_msg_PoseBatch& batch, PoseBatch& out) {
 namespace {
 
 // Of two positions of one joint in one message, none could be meant. NaN is refused as not finite.
-// Most messages have their joints in the order of the scene.
+// Most messages have their joints in the order of the scene. Others are sorted, since a message may
+// have as many entries as its sender likes.
 void refuse_two_positions(std::vector<JointSample>& joints) {
   const auto out_of_order =
       std::ranges::adjacent_find(joints, std::ranges::greater_equal(), &JointSample::variable);
   if (out_of_order == joints.end()) return;
-  for (std::size_t i = 0; i < joints.size(); ++i) {
-    if (joints[i].variable >= JointNames::kUnused) continue;
-    bool differs = false;
-    for (std::size_t k = i + 1; k < joints.size(); ++k)
-      differs = differs || (joints[k].variable == joints[i].variable &&
-                            !(joints[k].position == joints[i].position));
-    for (std::size_t k = i; differs && k < joints.size(); ++k)
-      if (joints[k].variable == joints[i].variable)
-        joints[k].position = std::numeric_limits<double>::quiet_NaN();
+  std::vector<JointSample*> sorted;
+  for (JointSample& sample : joints)
+    if (sample.variable < JointNames::kUnused) sorted.push_back(&sample);
+  std::ranges::stable_sort(sorted, {}, &JointSample::variable);
+  for (auto first = sorted.begin(); first != sorted.end();) {
+    const auto end = std::find_if(first, sorted.end(), [&](const JointSample* sample) {
+      return sample->variable != (*first)->variable;
+    });
+    const bool differ = std::any_of(first, end, [&](const JointSample* sample) {
+      return !(sample->position == (*first)->position);
+    });
+    for (; first != end; ++first)
+      if (differ) (*first)->position = std::numeric_limits<double>::quiet_NaN();
   }
 }
 

@@ -12,7 +12,7 @@
 namespace clearance {
 namespace {
 
-// Robots of any number of variables, of which all or none are known, before and after a change.
+// Whether a robot, and positions of it that were sent before the change, are known afterwards.
 struct Known {
   bool of_robot, of_samples;
 };

@@ -228,8 +228,8 @@ TEST_F(TrackedBodiesOfIntake, AreUnknownUntilATrackerThatFellSilentHasASuccessor
   EXPECT_TRUE(is_unknown()) << "it stands in for one only";
 }
 
-// Oracle: the trackers' last lists. Nothing is said of which tracker stands in for which. One that
-// was silent starts anew.
+// Oracle: the trackers' last lists. It leaves open who stands in for a silent one. One that was
+// silent starts anew.
 TEST_F(TrackedBodiesOfIntake, OfAllSequencesOfSixNeverLoseABodyThatATrackerSees) {
   struct Tracker {
     std::int64_t first_ns, last_ns;
