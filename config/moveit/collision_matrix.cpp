@@ -41,9 +41,10 @@ bool CollisionMatrix::allows(const std::string& a, const std::string& b) const {
   const auto row = places_.find(a), column = places_.find(b);
   if (row != places_.end() && column != places_.end())
     return rows_[row->second][column->second] && rows_[column->second][row->second];
-  const auto of_a = defaults_.find(a), of_b = defaults_.find(b);
-  if (of_a == defaults_.end() && of_b == defaults_.end()) return false;
-  return (of_a == defaults_.end() || of_a->second) && (of_b == defaults_.end() || of_b->second);
+  const auto default_a = defaults_.find(a), default_b = defaults_.find(b);
+  if (default_a == defaults_.end() && default_b == defaults_.end()) return false;
+  return (default_a == defaults_.end() || default_a->second) &&
+         (default_b == defaults_.end() || default_b->second);
 }
 
 AllowedCollisionMatrix CollisionMatrix::message() const {

@@ -156,7 +156,7 @@ class NewtonStep {
   HWY_INLINE void solve_once(PlacedParts& parts, Vec4 x) {
     Symmetric4 m = matrix(parts);
     trace = HWY_NAMESPACE::trace(m);
-    if (HWY_UNLIKELY(parts.count() == 3) && meet_all(parts, x, m)) return;
+    if (HWY_UNLIKELY(parts.count() == 3) && intersect_all(parts, x, m)) return;
     if (HWY_UNLIKELY(parts.count() == 2) && stop_at_kink(parts, x, m)) return;
     const Cofactors c = cofactors(m);
     const double distance = least * per_square_;
@@ -222,7 +222,7 @@ class NewtonStep {
     return true;
   }
   // The step of three pairs. False: one pair is left.
-  bool meet_all(PlacedParts& parts, Vec4 x, const Symmetric4& m) {
+  bool intersect_all(PlacedParts& parts, Vec4 x, const Symmetric4& m) {
     const Vec4 u = parts.gap[1] - parts.gap[0], v = parts.gap[2] - parts.gap[0];
     const Vec4 normal = cross(u, v);
     const double area = dot(normal, x);

@@ -22,8 +22,8 @@ struct PlacedParts {
       : a(side_a), b(side_b), a_from_b(pose), active(parts) {}
 
   [[nodiscard]] HWY_INLINE std::size_t count() const { return active.count; }
-  [[nodiscard]] HWY_INLINE SideParts side(bool of_a) const {
-    return {active.pairs.data(), weight, active.count, of_a ? &PartPair::a : &PartPair::b};
+  [[nodiscard]] HWY_INLINE SideParts side(bool is_a) const {
+    return {active.pairs.data(), weight, active.count, is_a ? &PartPair::a : &PartPair::b};
   }
   [[nodiscard]] HWY_INLINE bool has_planar_face() const {
     const PartPair& first = active.pairs[0];

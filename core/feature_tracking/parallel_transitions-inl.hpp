@@ -288,9 +288,9 @@ HWY_INLINE Transition facet_facet(TrackedPair& pair) {
 // For parallel edges that face each other nowhere: the ends that are nearest to each other are
 // next.
 inline Transition to_facing_ends(Side& on_a, Side& on_b, const Edge& first, const Edge& second,
-                                 bool after, bool same_way) {
+                                 bool after, bool same_direction) {
   to_vertex(on_a, first.vertex[after ? 1 : 0]);
-  to_vertex(on_b, second.vertex[after == same_way ? 0 : 1]);
+  to_vertex(on_b, second.vertex[after == same_direction ? 0 : 1]);
   return Transition::kMoved;
 }
 

@@ -25,8 +25,8 @@ Separator separator(const MinkowskiDifference& body, const NormalSearch::Best& b
   if (best.source != Source::kFacetOfX && best.source != Source::kFacetOfY) {
     return {body.to_a(best.n).normalized()};
   }
-  const bool of_b = (best.source == Source::kFacetOfX) == body.x_is_b();
-  if (!of_b) return {a.body().facets[best.facet].normal, best.facet, kNone};
+  const bool is_facet_of_b = (best.source == Source::kFacetOfX) == body.x_is_b();
+  if (!is_facet_of_b) return {a.body().facets[best.facet].normal, best.facet, kNone};
   const Vec3& normal = b.body().facets[best.facet].normal;
   return {-b.direction_to_a(normal).normalized(), kNone, best.facet};
 }

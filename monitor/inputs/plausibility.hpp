@@ -177,7 +177,7 @@ class Plausibility {
     rates_contradict_ = false;
     value_contradicts_rates_ = true;
     values_contradict_until_ns_ = less(sample.stamp_ns, -agree_for_ns(limits));
-    return same ? Reject::kFrozen : Reject::kOtherWay;
+    return same ? Reject::kFrozen : Reject::kOtherDirection;
   }
 
   // Call this when a sample is taken into use. `is_first`: there was no value before.

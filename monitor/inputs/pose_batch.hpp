@@ -32,18 +32,18 @@ inline constexpr double kLargestInSample = 1e9;
 
 // Why a sample was not used. Refusals are counted per object and named in the health topic.
 enum class Reject : std::uint8_t {
-  kUnknownObject,  // no such id, or a fixed object
-  kNonFinite,      // position, orientation or twist has NaN, infinity or a number above 1e9
-  kNotUnit,        // | |q| - 1 | > 1e-3
-  kBackwards,      // its stamp is before that of the pose in use
-  kFuture,         // its stamp is more than Scene::future_limit_ns ahead of now
-  kWrongRevision,  // made for another scene
-  kOtherSource,    // another source sends this object's poses
-  kTooFast,        // its distance from the pose in use, or its twist, exceeds the speed limit
-  kFrozen,         // the same pose repeatedly, although its twist says that it moves
-  kOtherWay,       // not where the twists or velocities lead
-  kDisputed,       // another source sends this input, and the two values exclude each other
-  kOutsideLimits,  // a joint's position is outside its limits
+  kUnknownObject,   // no such id, or a fixed object
+  kNonFinite,       // position, orientation or twist has NaN, infinity or a number above 1e9
+  kNotUnit,         // | |q| - 1 | > 1e-3
+  kBackwards,       // its stamp is before that of the pose in use
+  kFuture,          // its stamp is more than Scene::future_limit_ns ahead of now
+  kWrongRevision,   // made for another scene
+  kOtherSource,     // another source sends this object's poses
+  kTooFast,         // its distance from the pose in use, or its twist, exceeds the speed limit
+  kFrozen,          // the same pose repeatedly, although its twist says that it moves
+  kOtherDirection,  // not where the twists or velocities lead
+  kDisputed,        // another source sends this input, and the two values exclude each other
+  kOutsideLimits,   // a joint's position is outside its limits
   kCount
 };
 inline constexpr auto kRejects = static_cast<std::size_t>(Reject::kCount);

@@ -43,12 +43,12 @@ struct PutsElsewhere {
 // m; minus the depth if they certainly overlap, or else an upper bound of the distance.
 double distance_of(const Object& a, const Object& b, const Pose& a_from_object_b) {
   double least = kInfinity;
-  for (const Part& of_a : a.parts) {
-    for (const Part& of_b : b.parts) {
+  for (const Part& part_a : a.parts) {
+    for (const Part& part_b : b.parts) {
       TrackingState state;
       const DistanceResult result =
-          distance(of_a.shape, of_b.shape, of_a.object_from_part,
-                   compose(a_from_object_b, of_b.object_from_part), state);
+          distance(part_a.shape, part_b.shape, part_a.object_from_part,
+                   compose(a_from_object_b, part_b.object_from_part), state);
       least = std::min(least, result.upper < 0.0 ? result.distance : result.upper);
     }
   }

@@ -55,12 +55,12 @@ SweptSearch::SweptSearch(std::uint32_t part_pair, const TickView& view) noexcept
       tracking_(view.pairs.evaluations[part_pair].tracking) {
   place_between(motion_a_, 0.0, a_);
   place_between(motion_b_, 0.0, b_);
-  const RelativeMotion of_a =
+  const RelativeMotion motion_a =
       seen_from(motion_b_, motion_a_, a_.sphere_in_world.centre, a_.sphere_in_world.radius);
-  const RelativeMotion of_b =
+  const RelativeMotion motion_b =
       seen_from(motion_a_, motion_b_, b_.sphere_in_world.centre, b_.sphere_in_world.radius);
-  from_b_ = of_a.speed < of_b.speed;
-  relative_ = from_b_ ? of_a : of_b;
+  from_b_ = motion_a.speed < motion_b.speed;
+  relative_ = from_b_ ? motion_a : motion_b;
   for (const Vec3& place :
        {motion_a_.from.position, motion_a_.to.position, motion_b_.from.position,
         motion_b_.to.position, a_.sphere_in_world.centre, b_.sphere_in_world.centre}) {

@@ -132,14 +132,14 @@ MountTrack::Excess MountTrack::excess(std::int64_t last_ns) const {
   for (i = std::max<std::size_t>(i, 1); i < values.size(); ++i) {
     const auto &a = values.at(i - 1), &b = values.at(i);
     const double time_s = seconds(elapsed(a.stamp_ns, b.stamp_ns));
-    const double way = distance_between(a.value, b.value), angle = angle_between(a.value, b.value);
-    const double shift = way - speed.shift * time_s, turn = angle - speed.turn * time_s;
+    const double path = distance_between(a.value, b.value), angle = angle_between(a.value, b.value);
+    const double shift = path - speed.shift * time_s, turn = angle - speed.turn * time_s;
     if (limits_.speed.is_stated()) {
       found.shift = std::max(found.shift, shift);
       found.turn = std::max(found.turn, turn);
     } else {
       // The frame may have moved back meanwhile.
-      if (shift > kRounding) found.shift = rounded_up(found.shift + way + speed.shift * time_s);
+      if (shift > kRounding) found.shift = rounded_up(found.shift + path + speed.shift * time_s);
       if (turn > kRounding) found.turn = rounded_up(found.turn + angle + speed.turn * time_s);
     }
     if (b.stamp_ns >= last_ns) break;

@@ -293,10 +293,10 @@ std::optional<MountTrack::Excess> Mounts::deviation_in_gap(const MountSpeed& spe
   const PastPose& b = after->place;
   const Pose line = pose_between(a.world_from_body, b.world_from_body, since / (since + until));
   const double ends_shift = std::max(a.shift_error, b.shift_error);
-  const double way = distance_between(a.world_from_body, b.world_from_body);
+  const double apart = distance_between(a.world_from_body, b.world_from_body);
   const double angle = angle_between(a.world_from_body, b.world_from_body);
-  const double shift = deviation_in_space(since, until, speed.shift,
-                                          std::max(0.0, way - 2.0 * ends_shift) / (since + until));
+  const double shift = deviation_in_space(
+      since, until, speed.shift, std::max(0.0, apart - 2.0 * ends_shift) / (since + until));
   const double turn = deviation_of_turn(since, until, speed.turn, angle / (since + until));
   return MountTrack::Excess{
       .shift = rounded_up(shift + 2.0 * ends_shift + distance_between(line, pose)),

@@ -35,14 +35,14 @@ void OrganisedPoints::add_cell(const std::array<const Ray*, 4>& rays,
       const std::size_t side = i + k == 3 ? 2 : k - i - 1;
       widest2_[side] = std::max(widest2_[side], chord2);
       if (std::isnan(a.error) || std::isnan(b.error) || !on_one_surface(a, b, chord2)) continue;
-      const Vec3 way = b.point - a.point;
-      const double half2 = 0.25 * way.squaredNorm(), error = std::max(a.error, b.error);
+      const Vec3 across = b.point - a.point;
+      const double half2 = 0.25 * across.squaredNorm(), error = std::max(a.error, b.error);
       for (Reach* const reach : {reaches[i], reaches[k]}) {
         reach->squared = std::max(reach->squared, half2);
         reach->error = std::max(reach->error, error);
       }
-      sums[i] += way;
-      sums[k] -= way;
+      sums[i] += across;
+      sums[k] -= across;
       ++counts[i];
       ++counts[k];
     }

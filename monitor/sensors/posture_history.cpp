@@ -40,9 +40,9 @@ double farthest_within(const StampedSeries<double>& values, const JointMetric& m
     const auto &a = values.at(i - 1), &b = values.at(i);
     if (a.stamp_ns > last_ns) break;
     const double time = seconds_between(a.stamp_ns, b.stamp_ns);
-    const double way = distance(a.value, b.value), mean = way / time, u = std::min(mean, speed);
+    const double path = distance(a.value, b.value), mean = path / time, u = std::min(mean, speed);
     const double off = 0.5 * time * (speed - u) * (1.0 + u / speed) + excess(time, speed, mean);
-    const double around = distance(position, a.value) + way + distance(position, b.value);
+    const double around = distance(position, a.value) + path + distance(position, b.value);
     most = std::max(most, 0.5 * around + off);
   }
   return rounded_up(most);
@@ -151,10 +151,10 @@ void PostureHistory::place_joint(std::size_t variable, std::int64_t stamp_ns,
   const JointMetric metric(of.wraps);
   if (before != after) {
     const double until = seconds_between(stamp_ns, after->stamp_ns);
-    const double way = metric.difference(before->value, after->value);
-    state.position += way * (since / (since + until));
+    const double path = metric.difference(before->value, after->value);
+    state.position += path * (since / (since + until));
     const double rounding = kInterpolated * (std::abs(before->value) + std::abs(after->value));
-    state.may_have_moved = rounded_up(deviation(since, until, speed, way / (since + until)) +
+    state.may_have_moved = rounded_up(deviation(since, until, speed, path / (since + until)) +
                                       rounding + state.may_have_moved);
   }
   if (within_ns == 0) return;

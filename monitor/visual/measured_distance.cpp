@@ -60,11 +60,11 @@ MeasuredDistance MeasuredDistances::between(std::uint32_t a, std::uint32_t b,
     for (PosedPart& part : parts) place_at(*poses.pose(object), part);
     return parts;
   };
-  const auto of_a = placed(a), of_b = placed(b);
+  const auto parts_a = placed(a), parts_b = placed(b);
   MeasuredDistance nearest;
   nearest.lower = kInfinity;
-  for (const PosedPart& part_a : of_a) {
-    for (const PosedPart& part_b : of_b) {
+  for (const PosedPart& part_a : parts_a) {
+    for (const PosedPart& part_b : parts_b) {
       if (least_between(part_a.sphere_in_world, part_b.sphere_in_world) > nearest.upper) continue;
       take_nearer(part_a, part_b, errors_.largest(a, b), nearest);
     }

@@ -182,10 +182,11 @@ void Zones::explain(std::span<const TrackedObject> objects) noexcept {
     const double level = ZoneLevels::threshold(scene_.zones[z], !report.changed);
     const bool is_excused = contact != nullptr && contact->ended == ContactEnded::kNot;
     if (!is_excused && is_near(report, objects[a], objects[b], level)) continue;
-    const ZoneCause of_a = cause_of(scene_.objects[a], objects[a]);
-    const ZoneCause of_b = cause_of(scene_.objects[b], objects[b]);
-    const bool is_a = of_a != of_b ? of_a > of_b : objects[a].unobserved >= objects[b].unobserved;
-    report.cause = is_a ? of_a : of_b;
+    const ZoneCause cause_a = cause_of(scene_.objects[a], objects[a]);
+    const ZoneCause cause_b = cause_of(scene_.objects[b], objects[b]);
+    const bool is_a =
+        cause_a != cause_b ? cause_a > cause_b : objects[a].unobserved >= objects[b].unobserved;
+    report.cause = is_a ? cause_a : cause_b;
     if (report.cause >= ZoneCause::kLate) report.cause_object = is_a ? a : b;
   }
 }

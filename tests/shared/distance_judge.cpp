@@ -182,9 +182,9 @@ bool DistanceJudge::depth_is_known(const ExactDistance& truth) const {
 
 double DistanceJudge::size(double farthest, const Pose& pose_a, const Pose& pose_b) const {
   const double apart = (pose_b.position - pose_a.position).norm();
-  const double of_a = a_.bounding_radius + a_.radius, of_b = b_.bounding_radius + b_.radius;
-  const double reach_a = a_.bounded() ? of_a : std::max(of_a, of_b + apart + farthest);
-  const double reach_b = b_.bounded() ? of_b : std::max(of_b, of_a + apart + farthest);
+  const double radius_a = a_.bounding_radius + a_.radius, radius_b = b_.bounding_radius + b_.radius;
+  const double reach_a = a_.bounded() ? radius_a : std::max(radius_a, radius_b + apart + farthest);
+  const double reach_b = b_.bounded() ? radius_b : std::max(radius_b, radius_a + apart + farthest);
   return reach_a + reach_b + apart;
 }
 

@@ -31,15 +31,15 @@ std::string name_of(const TrackingState::Side& side) {
 
 std::string fault_from_any_start(DistanceJudge& judge, const Pose& pose_a, const Pose& pose_b) {
   const oracle::ExactDistance truth = judge.truth(pose_a, pose_b);
-  for (const TrackingState::Side& of_a : every_side(judge.a())) {
-    for (const TrackingState::Side& of_b : every_side(judge.b())) {
-      TrackingState state{of_a, of_b};
+  for (const TrackingState::Side& side_a : every_side(judge.a())) {
+    for (const TrackingState::Side& side_b : every_side(judge.b())) {
+      TrackingState state{side_a, side_b};
       const DistanceResult result = judge.ask(pose_a, pose_b, state);
       std::string out;
       for (const std::string& fault : judge.faults(result, truth, pose_a, pose_b)) {
         out += "\n  " + fault;
       }
-      if (!out.empty()) return "from " + name_of(of_a) + " and " + name_of(of_b) + ':' + out;
+      if (!out.empty()) return "from " + name_of(side_a) + " and " + name_of(side_b) + ':' + out;
     }
   }
   return {};

@@ -69,12 +69,12 @@ class Search {
   }
   // The vertex of {a - b} that is the support point along n, if there is one.
   std::optional<RationalVec> remember_corner(const RationalVec& n) {
-    const Support of_a = a_.support(primitive(n));
-    if (of_a.is_ray) return {};
-    const Support of_b = b_.support(primitive(Rational(-1) * place_.b_direction(n)));
-    if (of_b.is_ray) return {};
-    corners_.push_back(of_a.vector -
-                       (place_.a_from_b_rotation * of_b.vector + place_.a_from_b_translation));
+    const Support on_a = a_.support(primitive(n));
+    if (on_a.is_ray) return {};
+    const Support on_b = b_.support(primitive(Rational(-1) * place_.b_direction(n)));
+    if (on_b.is_ray) return {};
+    corners_.push_back(on_a.vector -
+                       (place_.a_from_b_rotation * on_b.vector + place_.a_from_b_translation));
     rounded_corners_.push_back(to_vec(corners_.back()));
     size_ = std::max(size_, rounded_corners_.back().norm());
     return corners_.back();
@@ -109,13 +109,13 @@ class Search {
 std::optional<Rational> exact_squared_depth(const Body& a, const Pose& world_from_a, const Body& b,
                                             const Pose& world_from_b) {
   Search search(a, world_from_a, b, world_from_b);
-  Features of_a = features_of(a), of_b = features_of(b);
-  for (RationalVec& n : of_b.normals) {
+  Features on_a = features_of(a), on_b = features_of(b);
+  for (RationalVec& n : on_b.normals) {
     n = Rational(-1) * (search.place().a_from_b_rotation * n);
   }
-  for (RationalVec& e : of_b.edges) e = search.place().a_from_b_rotation * e;
-  drop_parallels(of_a.edges);
-  drop_parallels(of_b.edges);
+  for (RationalVec& e : on_b.edges) e = search.place().a_from_b_rotation * e;
+  drop_parallels(on_a.edges);
+  drop_parallels(on_b.edges);
 
   for (int k = 0; k < 125; ++k) {
     const int x = k % 5 - 2, y = k / 5 % 5 - 2, z = k / 25 - 2;
@@ -124,19 +124,19 @@ std::optional<Rational> exact_squared_depth(const Body& a, const Pose& world_fro
   const auto try_unless_hopeless = [&](const RationalVec& n) {
     if (!is_zero(n) && !search.hopeless(rounded(n))) search.look(n);
   };
-  for (const RationalVec& n : of_a.normals) try_unless_hopeless(n);
-  for (const RationalVec& n : of_b.normals) try_unless_hopeless(n);
+  for (const RationalVec& n : on_a.normals) try_unless_hopeless(n);
+  for (const RationalVec& n : on_b.normals) try_unless_hopeless(n);
   std::vector<Vec3> rounded_b;
-  for (const RationalVec& f : of_b.edges) rounded_b.push_back(rounded(f));
-  for (const RationalVec& e : of_a.edges) {
+  for (const RationalVec& f : on_b.edges) rounded_b.push_back(rounded(f));
+  for (const RationalVec& e : on_a.edges) {
     const Vec3 rounded_e = rounded(e);
-    for (std::size_t k = 0; k < of_b.edges.size(); ++k) {
+    for (std::size_t k = 0; k < on_b.edges.size(); ++k) {
       const Vec3 across = rounded_e.cross(rounded_b[k]);
       const double sine = across.norm();
       const bool unsure = sine < kCrossing;
-      if (unsure || !search.hopeless(across / sine)) search.look(cross(e, of_b.edges[k]));
+      if (unsure || !search.hopeless(across / sine)) search.look(cross(e, on_b.edges[k]));
       if (unsure || !search.hopeless(-across / sine)) {
-        search.look(Rational(-1) * cross(e, of_b.edges[k]));
+        search.look(Rational(-1) * cross(e, on_b.edges[k]));
       }
     }
   }

@@ -44,7 +44,7 @@ void add_edges_of_rows(const std::vector<HalfSpace>& rows, Features& out) {
   }
 }
 
-void add_either_way(const RationalVec& normal, Features& out) {
+void add_both_signs(const RationalVec& normal, Features& out) {
   out.normals.push_back(normal);
   out.normals.push_back(Rational(-1) * normal);
 }
@@ -55,7 +55,7 @@ Features features_of_points(const std::vector<Vec3>& points) {
     for (std::size_t j = 0; j < i; ++j) {
       out.edges.push_back(exact(points[i]) - exact(points[j]));
       for (std::size_t k = 0; k < j; ++k) {
-        add_either_way(cross(out.edges.back(), exact(points[k]) - exact(points[j])), out);
+        add_both_signs(cross(out.edges.back(), exact(points[k]) - exact(points[j])), out);
       }
     }
   }
@@ -125,11 +125,11 @@ std::vector<RationalVec> outline(Layer layer) {
 Features features_of_prism(const std::vector<Layer>& layers) {
   Features out;
   out.edges.push_back(kAlongZ);
-  add_either_way(kAlongZ, out);
+  add_both_signs(kAlongZ, out);
   const std::vector<RationalVec> corners = outline(layers[0]);
   for (std::size_t i = 0; i < corners.size(); ++i) {
     out.edges.push_back(corners[(i + 1) % corners.size()] - corners[i]);
-    add_either_way(cross(out.edges.back(), kAlongZ), out);
+    add_both_signs(cross(out.edges.back(), kAlongZ), out);
   }
   return out;
 }
@@ -146,9 +146,9 @@ Features features_of_lens(const std::vector<Layer>& layers) {
     out.edges.push_back(side);
     for (const RationalVec& tip : tips) {
       out.edges.push_back(tip - corners[i]);
-      add_either_way(cross(side, out.edges.back()), out);
+      add_both_signs(cross(side, out.edges.back()), out);
     }
-    add_either_way(cross(axis, out.edges.back()), out);
+    add_both_signs(cross(axis, out.edges.back()), out);
   }
   return out;
 }

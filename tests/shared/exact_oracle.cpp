@@ -12,7 +12,7 @@ namespace {
 
 // A vertex or a ray of {b - a}, and the parts of each body that it consists of; all in frame A.
 struct Generator {
-  RationalVec difference, of_a, of_b;
+  RationalVec difference, p_a, p_b;
   bool is_ray;
 };
 
@@ -115,10 +115,10 @@ Generator next_generator(ExactBody& a, ExactBody& b, const Placement& place,
   const Support on_a = a.support(primitive(nearest));
   if (on_a.is_ray) return {minus_one * on_a.vector, on_a.vector, zero, true};
   const Support on_b = b.support(primitive(minus_one * place.b_direction(nearest)));
-  RationalVec of_b = place.a_from_b_rotation * on_b.vector;
-  if (on_b.is_ray) return {of_b, zero, of_b, true};
-  of_b = of_b + place.a_from_b_translation;
-  return {of_b - on_a.vector, on_a.vector, of_b, false};
+  RationalVec p_b = place.a_from_b_rotation * on_b.vector;
+  if (on_b.is_ray) return {p_b, zero, p_b, true};
+  p_b = p_b + place.a_from_b_translation;
+  return {p_b - on_a.vector, on_a.vector, p_b, false};
 }
 
 // Proves that (p, q) is a closest pair. Both points must lie in their bodies. The planes through
@@ -163,8 +163,8 @@ int ExactDistance::compare(double value) const {
   return compare(Rational(value));
 }
 
-void ExactDistance::add_radii(double of_a, double of_b) {
-  radii += Rational(of_a) + Rational(of_b);
+void ExactDistance::add_radii(double p_a, double p_b) {
+  radii += Rational(p_a) + Rational(p_b);
   enclose(*this);
 }
 
@@ -192,7 +192,7 @@ ExactDistance exact_distance(ExactBody& a, const Pose& world_from_a, ExactBody& 
     if (!next.is_ray && support_value >= out.squared) break;
     corral.add(std::move(next));
   }
-  const RationalVec p = corral.sum(&Generator::of_a), q = corral.sum(&Generator::of_b);
+  const RationalVec p = corral.sum(&Generator::p_a), q = corral.sum(&Generator::p_b);
   prove_optimal(a, b, place, corral, p, q);
   out.point_on_a = exact(world_from_a.position) + place.world_a * p;
   out.point_on_b = exact(world_from_a.position) + place.world_a * q;

@@ -30,7 +30,7 @@ struct ExactDistance {
   [[nodiscard]] int compare(const Rational& value) const;
   [[nodiscard]] int compare(double value) const;  // infinities allowed
   // Adds balls of these radii to the same pair.
-  void add_radii(double of_a, double of_b);
+  void add_radii(double radius_a, double radius_b);
   void set_squared_depth(const Rational& value);
 };
 

@@ -102,8 +102,9 @@ HardCase bare_cores(Random& random) {
     out.points.push_back(random.chance(0.5) ? Vec3::Zero() : random.in_box(1.0));
     if (random.chance(0.7)) {
       const double length = random.log_uniform(2e-12, 10.0);
-      const Vec3 way = random.chance(0.5) ? Vec3::Unit(random.integer(0, 2)) : random.direction();
-      out.points.push_back(out.points[0] + length * way);
+      const Vec3 direction =
+          random.chance(0.5) ? Vec3::Unit(random.integer(0, 2)) : random.direction();
+      out.points.push_back(out.points[0] + length * direction);
     }
     if (random.chance(0.3)) out.radius = random.log_uniform(1e-9, 1.0);
     return out;

@@ -81,11 +81,11 @@ HardCase foils(Random& random) {
       test::turned(Vec3::UnitZ(), random.chance(0.5) ? 0.0 : random.uniform(-3.0, 3.0));
   c.pose_b.orientation = tilted(random) * spin;
   c.pose_b.position = random.uniform(0.0, 1.9) * aside;
-  const double way = random.unit();
-  if (way < 0.2) {  // an end on the plate or almost on it
+  const double choice = random.unit();
+  if (choice < 0.2) {  // an end on the plate or almost on it
     const double deep = random.chance(0.3) ? 0.0 : random.log_uniform(1e-18, 1e-2);
     c.pose_b.position.z() = kHalfHeight + random.sign() * deep;
-  } else if (way < 0.5) {  // disjoint, or touching by a side, a vertex or an end
+  } else if (choice < 0.5) {  // disjoint, or touching by a side, a vertex or an end
     c.pose_b.position = 5.0 * (random.chance(0.5) ? aside : random.direction());
     const double gap = random.log_uniform(1e-17, 1.0);
     set_gap(c, random.chance(0.3) ? 0.0 : random.sign() * gap);

@@ -219,9 +219,9 @@ Body rounded(Random& random) {
   const bool axis_aligned = random.chance(0.4);
   out.points.push_back(axis_aligned ? Vec3(0, 0, -0.5) : random.in_box(1.0));
   if (random.chance(0.6)) {
-    const Vec3 way = axis_aligned ? Vec3(0, 0, 1) : random.direction();
+    const Vec3 direction = axis_aligned ? Vec3(0, 0, 1) : random.direction();
     const double length = random.chance(0.3) ? random.log_uniform(1e-9, 1e3) : 1.0;
-    out.points.push_back(out.points[0] + length * way);
+    out.points.push_back(out.points[0] + length * direction);
   }
   return out;
 }

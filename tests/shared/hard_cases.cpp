@@ -242,12 +242,12 @@ HardCase without_end(Random& random) {
   Body a = unbounded(random);
   Body b = random.chance(0.4) ? unbounded(random) : any_bounded(random);
   HardCase c = placed(std::move(a), std::move(b), random);
-  const double way = random.unit();
-  if (way < 0.4) {
+  const double choice = random.unit();
+  if (choice < 0.4) {
     c.pose_b.orientation = c.pose_a.orientation;
-  } else if (way < 0.6) {
+  } else if (choice < 0.6) {
     c.pose_b.orientation = c.pose_a.orientation * random_turn(random, 1e-16, 1e-3);
-  } else if (way < 0.8) {
+  } else if (choice < 0.8) {
     c.pose_a.orientation = Quat(1, 0, 0, 0);
     c.pose_b.orientation = random.chance(0.5) ? Quat(0, 1, 0, 0) : Quat(1, 0, 0, 0);
   }
@@ -358,10 +358,10 @@ void move_together(HardCase& c, const Quat& turn, const Vec3& shift) {
 void set_gap(HardCase& c, double gap) {
   const oracle::ExactDistance now = oracle::exact_distance(c.a, c.pose_a, c.b, c.pose_b);
   if (now.cores_meet()) return;
-  const Vec3 way = oracle::to_vec(now.point_on_b) - oracle::to_vec(now.point_on_a);
-  const double length = way.norm();
+  const Vec3 apart = oracle::to_vec(now.point_on_b) - oracle::to_vec(now.point_on_a);
+  const double length = apart.norm();
   if (!(length > 0.0)) return;
-  c.pose_b.position += way / length * (gap - now.lower);
+  c.pose_b.position += apart / length * (gap - now.lower);
 }
 
 }  // namespace clearance::hard

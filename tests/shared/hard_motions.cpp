@@ -25,13 +25,15 @@ Pose pose_at(const Vec3& position, const Quat& orientation = {1, 0, 0, 0}) {
 HardMotion flyby(Random& random, int steps) {
   HardMotion m = pair_of(random, "flyby");
   const double reach = extent(m.a) + extent(m.b);
-  const Vec3 way = random.direction(), axis_a = random.direction(), axis_b = random.direction();
-  const Vec3 across = way.cross(random.direction());
+  const Vec3 direction = random.direction(), axis_a = random.direction(),
+             axis_b = random.direction();
+  const Vec3 across = direction.cross(random.direction());
   const Vec3 beside = across * reach * random.uniform(0.5, 3.0);
   for (int k = 0; k < steps; ++k) {
     const double t = 2.0 * k / steps - 1.0;
-    m.poses.emplace_back(pose_at(Vec3::Zero(), test::turned(axis_a, t)),
-                         pose_at(beside + way * (4 * reach * t), test::turned(axis_b, 2 * t)));
+    m.poses.emplace_back(
+        pose_at(Vec3::Zero(), test::turned(axis_a, t)),
+        pose_at(beside + direction * (4 * reach * t), test::turned(axis_b, 2 * t)));
   }
   return m;
 }
@@ -104,12 +106,12 @@ HardMotion stationary(Random& random, int steps) {
 HardMotion through(Random& random, int steps) {
   HardMotion m = pair_of(random, "through");
   const double reach = 1.2 * (extent(m.a) + extent(m.b));
-  const Vec3 way = random.direction(), axis = random.direction();
+  const Vec3 direction = random.direction(), axis = random.direction();
   const Quat turn = random.rotation();
   for (int k = 0; k < steps; ++k) {
     const double t = 2.0 * k / steps - 1.0;
     m.poses.emplace_back(pose_at(Vec3::Zero(), turn),
-                         pose_at(way * (reach * t), test::turned(axis, 0.3 * t)));
+                         pose_at(direction * (reach * t), test::turned(axis, 0.3 * t)));
   }
   return m;
 }
@@ -122,13 +124,13 @@ HardMotion graze(Random& random, int steps) {
   start.pose_b.position = random.direction() * 2.0 * (extent(start.a) + extent(start.b));
   const Vec3 apart = start.pose_b.position;
   set_gap(start, 0.0);
-  const Vec3 way = (apart - start.pose_b.position).normalized();
+  const Vec3 direction = (apart - start.pose_b.position).normalized();
   HardMotion m{"graze", start.a, start.b, {}};
   for (int k = 0; k < steps; ++k) {
     const double t = 2.0 * k / steps - 1.0;
     const double gap = std::pow(10.0, -16.0 + 15.0 * std::abs(t));
     Pose b = start.pose_b;
-    b.position += way * gap;
+    b.position += direction * gap;
     m.poses.emplace_back(start.pose_a, b);
   }
   return m;

@@ -16,8 +16,8 @@ using Quat = Eigen::Quaterniond;
 double either_sign(Random& random, double magnitude) { return random.sign() * magnitude; }
 
 // Moves B away from A, and in most cases back to a small gap or overlap.
-void part(HardCase& c, const Vec3& way, double size, Random& random) {
-  c.pose_b.position = c.pose_a.position + 3.0 * size * way;
+void part(HardCase& c, const Vec3& direction, double size, Random& random) {
+  c.pose_b.position = c.pose_a.position + 3.0 * size * direction;
   if (random.chance(0.2)) return;
   const double gap = size * random.log_uniform(1e-16, 1.0);
   set_gap(c, random.chance(0.25) ? -gap : gap);
@@ -145,11 +145,11 @@ HardCase selfsame(Random& random) {
 
 HardCase razors(Random& random) {
   const double off = random.chance(0.5) ? 0.0 : random.log_uniform(1e-2, 1e6);
-  const auto blade = [&](double way) {
+  const auto blade = [&](double sign) {
     const double angle = random.log_uniform(1e-6, 1.0), length = random.log_uniform(1e-2, 1e3);
     Body out = wedge(angle, length);
     // about z, which makes the edge point to -x
-    if (way < 0.0) out = rotated(std::move(out), Quat(0, 0, 0, 1));
+    if (sign < 0.0) out = rotated(std::move(out), Quat(0, 0, 0, 1));
     return shifted(std::move(out), {0.0, random.uniform(-off, off), random.uniform(-1e-3, 1e-3)});
   };
   Body a = blade(1.0), b = blade(-1.0);

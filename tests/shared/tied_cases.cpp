@@ -37,8 +37,8 @@ HardCase shared_corners(Random& random) {
   if (c.a.points.empty()) c.a = dual_ball(random.integer(2, 3));
   // The vertices that are extreme in one direction are copied to B, together with vertices farther
   // in that direction.
-  const Vec3 way = random.direction();
-  const auto height = [&](const Vec3& p) { return way.dot(p); };
+  const Vec3 direction = random.direction();
+  const auto height = [&](const Vec3& p) { return direction.dot(p); };
   std::sort(c.a.points.begin(), c.a.points.end(),
             [&](const Vec3& p, const Vec3& q) { return height(p) > height(q); });
   const auto common = static_cast<std::ptrdiff_t>(random.integer(1, 4));
@@ -47,7 +47,7 @@ HardCase shared_corners(Random& random) {
   for (int k = random.integer(4, 8); k > 0; --k) {
     const Vec3 p = random.in_box(1.0);
     const double up = top - height(p) + random.log_uniform(1e-6, 1.0);
-    c.b.points.push_back(p + up * way);
+    c.b.points.push_back(p + up * direction);
   }
   place_both(c, random);
   return c;
@@ -120,9 +120,9 @@ HardCase mirrored(Random& random) {
   HardCase c{"", body, body, {}, {}};
   c.pose_b.orientation = any_turn(random);
   const int along = random.integer(0, 8), across = random.integer(0, 8);
-  const Vec3 ways[] = {{1, 1, 0}, {1, 1, 1}, {1, 0, 0}, {0, 1, -1}, {1, -1, 1}};
-  c.pose_b.position = along * ways[random.integer(0, 4)];
-  if (random.chance(0.3)) c.pose_b.position += 0.5 * across * ways[random.integer(0, 4)];
+  const Vec3 directions[] = {{1, 1, 0}, {1, 1, 1}, {1, 0, 0}, {0, 1, -1}, {1, -1, 1}};
+  c.pose_b.position = along * directions[random.integer(0, 4)];
+  if (random.chance(0.3)) c.pose_b.position += 0.5 * across * directions[random.integer(0, 4)];
   if (random.chance(0.3)) {
     const double off = random.log_uniform(1e-17, 1e-9);
     c.pose_b.position += off * random.direction();

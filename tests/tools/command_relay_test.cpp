@@ -30,7 +30,7 @@ class RelayedCommands : public testing::Test {
  protected:
   RelayedCommands() {
     for (const Share& share : cell.shares.all) {
-      OfShare& of = shares[share.name];
+      ShareRelay& of = shares[share.name];
       daemons.emplace_back(
           dds,
           [this, &of](const Command& command) {
@@ -70,7 +70,7 @@ class RelayedCommands : public testing::Test {
     result.reason = "it has no room";
   }
 
-  struct OfShare {
+  struct ShareRelay {
     std::atomic<int> tried{0}, asked{0};  // dry runs and others
     // Changes the result; false: it does not answer.
     std::function<bool(const Command&, CommandResult&)> answers = [](auto&, auto&) { return true; };
@@ -78,7 +78,7 @@ class RelayedCommands : public testing::Test {
   DdsOptions dds = test::own_dds();
   test::CellFile file{test::shared_cell("commands: {from: [planner]}\n")};
   Cell cell = file.cell();
-  std::map<std::string, OfShare> shares;
+  std::map<std::string, ShareRelay> shares;
   std::list<test::AnsweringDaemon> daemons;
   test::ChildProcess merge{test::kMerge, test::with({file.path()}, test::dds_arguments(dds))};
   client::Connection connection{dds, cell.topics};

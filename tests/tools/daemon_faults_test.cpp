@@ -64,7 +64,7 @@ TEST(DaemonLiveliness, LeaseIsTenPeriodsAndNoLessThanATenthOfASecond) {
   EXPECT_EQ(lease_ns(10.0), 1'000'000'000);
 }
 
-TEST(TwoDaemons, TheSecondGivesWayAndTheFirstGoesOn) {
+TEST(TwoDaemons, TheSecondYieldsAndTheFirstGoesOn) {
   const test::CellFile cell(test::small_cell("small"));
   const Cell read = cell.cell();
   const DdsOptions dds = test::own_dds();
@@ -104,7 +104,7 @@ TEST(TwoDaemons, TheSecondGivesWayAndTheFirstGoesOn) {
   EXPECT_EQ(first.wait(), 0) << first.output();
 }
 
-TEST(TwoDaemons, OneThatStandsStillOrIsDeadIsInNobodysWay) {
+TEST(TwoDaemons, OneThatStandsStillOrIsDeadBlocksNoOther) {
   for (const int signal : {SIGSTOP, SIGKILL}) {
     WatchedDaemon watched;
     watched.run();

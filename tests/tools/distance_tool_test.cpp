@@ -311,7 +311,7 @@ TEST_F(DistanceTool, WorksOnFilesAndRepeatsForTheClock) {
   EXPECT_NE(r.err.find("50 queries"), std::string::npos) << r.err;
 }
 
-TEST_F(DistanceTool, CountsWhichWayTheAnswersCame) {
+TEST_F(DistanceTool, CountsByWhichPathTheAnswersCame) {
   std::ofstream(path("cases.jsonl")) << cubes("apart", 1.5) << '\n'
                                      << cubes("overlapping", 0.25) << '\n'
                                      << cubes("tilted", 0.25, "0.8,0.36,0.48,0");

@@ -88,7 +88,7 @@ TEST_F(OfficialWriter, MakesTheMessagesThatOurTestsMake) {
   EXPECT_EQ(expected, write(both.spec, ""));
 }
 
-TEST_F(OfficialWriter, ItsBagsAreReadWhicheverWayTheyAreCompressed) {
+TEST_F(OfficialWriter, ItsBagsAreReadHoweverTheyAreCompressed) {
   for (const char* compression : {"", "zstd", "lz4"}) {
     both.spec["compression"] = compression;
     write(both.spec, (folder / "bag.mcap").string());

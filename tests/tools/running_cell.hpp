@@ -110,7 +110,7 @@ class Poses {
   [[nodiscard]] dds_entity_t writer() const noexcept { return writer_; }
 
   // Translates everything by this vector from the positions in the cell, m.
-  void move_by(const Vec3& way) { moved_ = way; }
+  void move_by(const Vec3& shift) { moved_ = shift; }
   // Multiplies the twists of the motion by this factor.
   void scale_twists(double factor) { twist_factor_ = factor; }
   // Makes stamps come from a clock that is ahead by this time.

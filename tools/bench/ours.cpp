@@ -39,7 +39,7 @@ class FromRelativePoses {
       : load_(load), states_(load.trajectories.size()) {
     for (const Trajectory& t : load.trajectories) {
       auto& poses = poses_.emplace_back();
-      for (const auto& [of_a, of_b] : t.poses) poses.push_back(relative_pose(of_a, of_b));
+      for (const auto& [pose_a, pose_b] : t.poses) poses.push_back(relative_pose(pose_a, pose_b));
     }
     verdict_ = judge_trajectories(load, [this](std::size_t i, const auto& use) { follow(i, use); });
   }

@@ -98,12 +98,12 @@ std::vector<Trajectory> sliding_boxes() {
     const Eigen::Quaterniond both =
         i % 2 == 0 ? Eigen::Quaterniond::Identity() : random.turn().normalized();
     const int across = i % 3;
-    Vec3 way = random.direction();
-    way[across] = 0.0;
+    Vec3 direction = random.direction();
+    direction[across] = 0.0;
     const double apart = a->bounding_radius + b->bounding_radius + random.uniform(0.0, 0.5);
     Trajectory t{a, b, {}};
     for (int k = 0; k < kTrajectorySteps; ++k) {
-      Vec3 centre = 0.02 * (k - kTrajectorySteps / 2) * way;
+      Vec3 centre = 0.02 * (k - kTrajectorySteps / 2) * direction;
       centre[across] = apart;
       t.poses.push_back({{Vec3::Zero(), both}, {both * centre, both}});
     }

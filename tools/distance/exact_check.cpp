@@ -85,12 +85,12 @@ std::string shown(double value) {
 double size_of(const DistanceCase& asked, std::size_t pose, double farthest) {
   const auto& [world_from_a, world_from_b] = asked.poses[pose];
   const double apart = (world_from_b.position - world_from_a.position).norm();
-  const double of_a = asked.a.bounding_radius + asked.a.radius;
-  const double of_b = asked.b.bounding_radius + asked.b.radius;
+  const double radius_a = asked.a.bounding_radius + asked.a.radius;
+  const double radius_b = asked.b.bounding_radius + asked.b.radius;
   const auto radius = [&](const ConvexBody& body, double own, double of_other) {
     return body.bounded() ? own : std::max(own, of_other + apart + farthest);
   };
-  return radius(asked.a, of_a, of_b) + radius(asked.b, of_b, of_a) + apart;
+  return radius(asked.a, radius_a, radius_b) + radius(asked.b, radius_b, radius_a) + apart;
 }
 
 // The entry of a motion, or the value itself for a single pose.

@@ -55,10 +55,10 @@ TEST(AlphaStep, OnAnEdgeStopsAtTheVertexThatItPasses) {
   const ConvexBody body = cube();
   const ActiveFeature side = active(body, nullptr, FeatureKind::kEdge,
                                     edge_around(body, {0.0, 0.5, 0.5}), {0.25, 0.5, 0.5});
-  for (const double way : {1.0, -1.0}) {
-    const Alpha step = alpha(side, {3.0 * way, 0.0, 0.0});
-    EXPECT_EQ(step.fraction, (way > 0.0 ? 0.25 : 0.75) / 3.0);
-    EXPECT_EQ(step.blocking, vertex_at(body, {0.5 * way, 0.5, 0.5}));
+  for (const double sign : {1.0, -1.0}) {
+    const Alpha step = alpha(side, {3.0 * sign, 0.0, 0.0});
+    EXPECT_EQ(step.fraction, (sign > 0.0 ? 0.25 : 0.75) / 3.0);
+    EXPECT_EQ(step.blocking, vertex_at(body, {0.5 * sign, 0.5, 0.5}));
   }
 }
 

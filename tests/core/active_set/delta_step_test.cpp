@@ -202,10 +202,10 @@ TEST_F(DeltaStep, EndsOnBothHullsAtRightAnglesToThem) {
     const ConvexBody a = made(hard::random_polytope(random, 8)),
                      b = made(hard::random_polytope(random, 12));
     const RelativePose pose = relative_pose(Pose{}, random.pose(3.0));
-    for (const FeatureKind of_a : kKinds) {
-      for (const FeatureKind of_b : kKinds) {
-        const ActiveFeature p = active(a, nullptr, of_a, random.integer(0, 99));
-        const ActiveFeature q = active(b, &pose, of_b, random.integer(0, 99));
+    for (const FeatureKind kind_a : kKinds) {
+      for (const FeatureKind kind_b : kKinds) {
+        const ActiveFeature p = active(a, nullptr, kind_a, random.integer(0, 99));
+        const ActiveFeature q = active(b, &pose, kind_b, random.integer(0, 99));
         const Delta d = delta(p, q);
         const double size = 1.0 + d.a.norm() + d.b.norm();
         EXPECT_LE(off_the_hull(p, d.a - p.point_A()), 1e-11 * size) << k;

@@ -59,7 +59,7 @@ TEST(CurvedDistance, OfTheThesissCrossedEllipsoidsIsTheKnownOne) {
   EXPECT_EQ(r.status, DistanceStatus::kConverged);
 }
 
-TEST(CurvedDistance, OfSpheresMadeAnyWayIsThatOfTheirCentresLessTheRadii) {
+TEST(CurvedDistance, OfSpheresHoweverMadeIsThatOfTheirCentresLessTheRadii) {
   const ConvexBody point = made(clearance::point({0, 0, 0}, 0.75));
   const ConvexBody round[] = {made(ellipsoid({0.75, 0.75, 0.75})), point,
                               made(ellipsoid({0.5, 0.5, 0.5}, 0.25))};
@@ -118,7 +118,7 @@ TEST(CurvedDistance, OfDiscsAndNeedlesIsRightAlongTheirAxes) {
   expect_answer(answer(needle, needle, at(0, 0, 0), at(1, 0, 0)), 1.0 - 2e-4, 4.0);
 }
 
-TEST(CurvedDistance, OfBodiesThatOverlapIsMinusTheShortestWayOut) {
+TEST(CurvedDistance, OfBodiesThatOverlapIsMinusTheShortestPathOut) {
   const ConvexBody a = made(cylinder(1.0, 3.0)), b = made(ellipsoid({0.5, 0.5, 2}));
   // The sideways translation, 1.5 - 1 = 0.5, is shorter than the lengthwise one, 5.
   expect_answer(answer(a, b, at(0, 0, 0), at(1, 0, 0)), -0.5, 7.0);

@@ -32,8 +32,9 @@ oracle::CurvedBody long_cone(double low, double high) {
 // B moves around A in a spiral and rotates. The distance between the centres is 0.7 m to 2 m.
 std::pair<Pose, Pose> spiral(double t) {
   const double far = 1.35 + 0.65 * std::cos(0.0171 * t);
-  const Vec3 way(std::cos(t), std::sin(t) * std::cos(0.37 * t), std::sin(t) * std::sin(0.37 * t));
-  return {Pose{}, {far * way, test::turned({0.6, 0.0, 0.8}, 1.22 * t)}};
+  const Vec3 direction(std::cos(t), std::sin(t) * std::cos(0.37 * t),
+                       std::sin(t) * std::sin(0.37 * t));
+  return {Pose{}, {far * direction, test::turned({0.6, 0.0, 0.8}, 1.22 * t)}};
 }
 
 // Two caps at a distance of 1 mm to 0.4 m, as parallel as quaternions can represent. Both bodies

@@ -48,7 +48,7 @@ DistanceResult answer(const CurvedCase& c, TrackingState& state) {
 }
 
 // Cold and tracked. Returns the status of the cold query.
-DistanceStatus expect_no_faults_one_way(const CurvedCase& asked) {
+DistanceStatus expect_no_faults_in_this_order(const CurvedCase& asked) {
   const CurvedJudge judge(asked);
   TrackingState state;
   const DistanceResult cold = answer(asked, state), tracked = answer(asked, state);
@@ -59,8 +59,8 @@ DistanceStatus expect_no_faults_one_way(const CurvedCase& asked) {
 // The same with the bodies swapped as well.
 DistanceStatus expect_no_faults(const CurvedCase& c, const std::string& what) {
   SCOPED_TRACE(what);
-  (void)expect_no_faults_one_way({c.b, c.a, c.pose_b, c.pose_a});
-  return expect_no_faults_one_way(c);
+  (void)expect_no_faults_in_this_order({c.b, c.a, c.pose_b, c.pose_a});
+  return expect_no_faults_in_this_order(c);
 }
 
 struct Sized {

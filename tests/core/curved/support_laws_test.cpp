@@ -150,7 +150,7 @@ TEST(SupportLaws, PointsPulledInsideAreInsideAndPointsInsideStay) {
   }
 }
 
-TEST(SupportLaws, ThePointOfTheSupportSetIsASupportPointAndNoneIsFartherThatWay) {
+TEST(SupportLaws, ThePointOfTheSupportSetIsASupportPointAndNoneIsFartherInThatDirection) {
   for (const ConvexBody& body : every_body()) {
     const BodyView view{&body, body.bounding_radius};
     for (const Vec3& m : fifteen_axes()) {

@@ -132,11 +132,11 @@ TEST(ParallelTransitions, WitnessesMoveNoFasterThanTheBodies) {
       Random random(seed);
       const Quat world = random.rotation();
       const double angle = random.uniform(0.0, 6.3), step = 0.01;
-      const Vec3 way = step * Vec3(std::cos(angle), std::sin(angle), 0.0);
+      const Vec3 shift = step * Vec3(std::cos(angle), std::sin(angle), 0.0);
       TrackingState state;
       Vec3 last = Vec3::Zero();
       for (int k = -60; k < 60; ++k) {
-        const Pose b{world * (pair.offset + k * way), world * pair.turn};
+        const Pose b{world * (pair.offset + k * shift), world * pair.turn};
         const DistanceResult result = judge.ask({Vec3::Zero(), world}, b, state);
         if (k > -60) {
           EXPECT_LE((result.point_on_a - last).norm(), step + 1e-13)

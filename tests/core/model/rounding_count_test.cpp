@@ -57,11 +57,10 @@ struct CountedPlace {
   Counted3 translation;
 
   CountedPlace(const Pose& a, const Pose& b) {
-    const CountedQuaternion of_a(a.orientation),
-        q = relative(of_a, CountedQuaternion(b.orientation));
+    const CountedQuaternion q_a(a.orientation), q = relative(q_a, CountedQuaternion(b.orientation));
     set_rotation(q);
-    const Counted3 between = counted(b.position) - counted(a.position), c = cross(of_a.v, between);
-    translation = between + two_over_square(of_a) * (cross(of_a.v, c) - of_a.w * c);
+    const Counted3 between = counted(b.position) - counted(a.position), c = cross(q_a.v, between);
+    translation = between + two_over_square(q_a) * (cross(q_a.v, c) - q_a.w * c);
   }
   void set_rotation(const CountedQuaternion& q) {
     const Counted s = two_over_square(q);

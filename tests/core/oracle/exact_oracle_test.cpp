@@ -141,9 +141,9 @@ TEST(ExactOracle, KnowsPrismsAndLensesByTheirOutlineAsByAllThatThereMayBe) {
     return Eigen::Quaterniond(1, x, y, z);
   };
   for (int k = 0; k < 4; ++k) {
-    const auto of_a = plain_bodies(random), of_b = plain_bodies(random);
-    for (const Body& a : of_a) {
-      const Body& b = of_b[static_cast<std::size_t>(random.integer(0, 2))];
+    const auto bodies_a = plain_bodies(random), bodies_b = plain_bodies(random);
+    for (const Body& a : bodies_a) {
+      const Body& b = bodies_b[static_cast<std::size_t>(random.integer(0, 2))];
       const Pose pose_a{Vec3::Zero(), turn()}, pose_b{random.in_box(0.2), turn()};
       const Pose lying_a{pose_a.position, pose_a.orientation * upright};
       const Pose lying_b{pose_b.position, pose_b.orientation * upright};

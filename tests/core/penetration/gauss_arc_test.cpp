@@ -18,7 +18,7 @@ using test::cold;
 using test::made;
 
 // The translation of B along n after which it is clear of A. The vertices are in one frame.
-double way_out(const std::vector<Vec3>& a, const std::vector<Vec3>& b, const Vec3& n) {
+double depth_along(const std::vector<Vec3>& a, const std::vector<Vec3>& b, const Vec3& n) {
   double top = -kInfinity, bottom = kInfinity;
   for (const Vec3& p : a) top = std::max(top, p.dot(n));
   for (const Vec3& p : b) bottom = std::min(bottom, p.dot(n));
@@ -30,7 +30,7 @@ double depth_by_trying_all(const ConvexBody& a, const ConvexBody& b, const Relat
   for (const Vec3& p : b.anchors) placed.push_back(pose.rotation * p + pose.translation);
   double least = kInfinity;
   const auto look = [&](const Vec3& n) {
-    least = std::min(least, way_out(a.anchors, placed, n.normalized()));
+    least = std::min(least, depth_along(a.anchors, placed, n.normalized()));
   };
   for (const Facet& facet : a.facets) look(facet.normal);
   for (const Facet& facet : b.facets) look(-(pose.rotation * facet.normal));
@@ -66,7 +66,7 @@ std::vector<TurnedPair> pairs_of_many_corners(Random& random) {
           {small, dual}, {rough, ball}, {rough, rough}, {ball, test::cube()}};
 }
 
-TEST(DeepOverlap, HasNoShorterWayOutThanAllThatThereAre) {
+TEST(DeepOverlap, HasNoShorterPathOutThanAllThatThereAre) {
   for (std::uint64_t seed = 1; seed <= 3; ++seed) {
     Random random(seed);
     for (const auto& [a, b] : pairs_of_many_corners(random)) {
@@ -86,9 +86,10 @@ TEST(DeepOverlap, IsAsDeepTrackedAsItIs) {
   Random random(7);
   for (const auto& [a, b] : pairs_of_many_corners(random)) {
     TrackingState state;
-    const Vec3 way = random.direction();
+    const Vec3 direction = random.direction();
     for (int k = -6; k <= 6; ++k) {
-      const Pose pose_b{0.01 * k * way, Eigen::Quaterniond(Eigen::AngleAxisd(0.02 * k, way))};
+      const Pose pose_b{0.01 * k * direction,
+                        Eigen::Quaterniond(Eigen::AngleAxisd(0.02 * k, direction))};
       const RelativePose pose = relative_pose(Pose{}, pose_b);
       expect_depth_of_all(distance(a, b, pose, state), depth_by_trying_all(a, b, pose));
     }
@@ -135,13 +136,13 @@ struct PlateAndPillar {
   }
   [[nodiscard]] Vec3 of_rim(int i) const { return on_circle((i + 0.5) / rim); }
   // The shortest translation that moves the pillar past an edge of the rim.
-  [[nodiscard]] double way_past_the_rim(const RelativePose& pose) const {
+  [[nodiscard]] double path_past_the_rim(const RelativePose& pose) const {
     std::vector<Vec3> placed;
     for (const Vec3& p : pillar.anchors) placed.push_back(pose.rotation * p + pose.translation);
     double least = kInfinity;
     for (int i = 0; i < rim; ++i) {
       const Vec3 out = (of_rim(i + 1) - of_rim(i)).cross(Vec3::UnitZ()).normalized();
-      least = std::min(least, way_out(plate.anchors, placed, out));
+      least = std::min(least, depth_along(plate.anchors, placed, out));
     }
     return least;
   }
@@ -150,7 +151,7 @@ struct PlateAndPillar {
 // At an edge of the rim, rounding cannot always tell that the pillar's centre is outside both
 // facets, although it is far outside the edge. For plates of 1e-16 m and less, depths were once up
 // to 6 mm too large.
-TEST(DeepOverlap, WithAPlateAllButFlatIsNoDeeperThanTheWayPastItsRim) {
+TEST(DeepOverlap, WithAPlateAllButFlatIsNoDeeperThanThePathPastItsRim) {
   Random random(2);
   for (int k = 0; k < 32; ++k) {
     const PlateAndPillar pair(20 + 2 * k, 120 + k, std::ldexp(1.0, -24 - k % 15));
@@ -159,7 +160,7 @@ TEST(DeepOverlap, WithAPlateAllButFlatIsNoDeeperThanTheWayPastItsRim) {
       const Eigen::Quaterniond turn(Eigen::AngleAxisd(i % 2 * random.unit(), Vec3::UnitZ()));
       const RelativePose pose = relative_pose(Pose{}, {beside, turn});
       const DistanceResult r = cold(pair.plate, pair.pillar, pose);
-      EXPECT_LE(-r.upper, pair.way_past_the_rim(pose) + 1e-14) << "plate " << k << ", pose " << i;
+      EXPECT_LE(-r.upper, pair.path_past_the_rim(pose) + 1e-14) << "plate " << k << ", pose " << i;
     }
   }
 }

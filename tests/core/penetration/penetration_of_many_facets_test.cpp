@@ -34,7 +34,7 @@ TEST(Penetration, OfManyFacetsIsFoundToRoundingToo) {
 }
 
 // The translation of B along n, of any length, after which it is clear of A.
-double way_out_along(const ConvexBody& a, const ConvexBody& b, const Pose& pose_b, const Vec3& n) {
+double depth_along(const ConvexBody& a, const ConvexBody& b, const Pose& pose_b, const Vec3& n) {
   long double support_a = -kInfinity, support_b = -kInfinity;
   const auto along = [&](const Vec3& p) {
     return static_cast<long double>(n.x()) * p.x() + static_cast<long double>(n.y()) * p.y() +
@@ -49,11 +49,11 @@ double way_out_along(const ConvexBody& a, const ConvexBody& b, const Pose& pose_
 
 // Each facet of the difference body is normal to a facet normal of one body's facet, or to an edge
 // of each body. Any other direction needs a longer translation.
-double shortest_way_out(const ConvexBody& a, const ConvexBody& b, const Pose& pose_b) {
+double shortest_path_out(const ConvexBody& a, const ConvexBody& b, const Pose& pose_b) {
   const Eigen::Quaterniond turn = pose_b.orientation.normalized();
   double least = kInfinity;
   const auto attempt = [&](const Vec3& n) {
-    least = std::min(least, way_out_along(a, b, pose_b, n));
+    least = std::min(least, depth_along(a, b, pose_b, n));
   };
   for (const Facet& facet : a.facets) attempt(facet.normal);
   for (const Facet& facet : b.facets) attempt(-(turn * facet.normal));
@@ -73,7 +73,7 @@ TEST(Penetration, IsTheLeastOverAllFacetsAndPairsOfEdges) {
   Random random(4);
   for (int k = 0; k < 8; ++k) {
     const Pose pose_b{random.direction() * random.uniform(0.0, 1.6), random.rotation()};
-    EXPECT_NEAR(-cold(a, b, pose_b).distance, shortest_way_out(a, b, pose_b),
+    EXPECT_NEAR(-cold(a, b, pose_b).distance, shortest_path_out(a, b, pose_b),
                 1e-14 * size_of(a, b, pose_b));
   }
 }

@@ -77,7 +77,7 @@ void for_each_overlap(std::uint64_t seeds, const std::function<void(Overlap&, Ra
   }
 }
 
-TEST(Penetration, OfCubesIsTheShortestWayOutOfAFace) {
+TEST(Penetration, OfCubesIsTheShortestPathOutOfAFace) {
   expect_depth(cold(cube(), cube(), at(0.9, 0, 0)), 0.1);
   expect_depth(cold(cube(), cube(), at(0.5, 0.5, 0.5)), 0.5);
   expect_depth(cold(cube(), cube(), at(0, 0, 0.999999)), 1 - 0.999999);
@@ -124,7 +124,7 @@ TEST(Penetration, KeepsItsDirectionWhereOthersAreAsDeep) {
   }
 }
 
-TEST(Penetration, OfASmallBodyInsideALargeOneIsTheWayToTheNearestFace) {
+TEST(Penetration, OfASmallBodyInsideALargeOneIsThePathToTheNearestFace) {
   const ConvexBody room = made(hard::box({5, 5, 2})), ball = made({{}, {Vec3::Zero()}, 0.25});
   expect_depth(cold(room, cube(), at(1, 2, 0.5)), 2.0, 10);
   expect_depth(cold(room, ball, at(4.5, 2, 0)), 0.75, 10);

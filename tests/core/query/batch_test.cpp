@@ -164,10 +164,10 @@ TEST(DistanceBatch, GivesTheBitsOfSingleQueriesOfWhatComesBackFromFarAway) {
   motion.watch_all_pairs();
   Random random(5);
   for (int round = 0; round < 200; ++round) {
-    const Vec3 way = turn.col(round % 3);
+    const Vec3 direction = turn.col(round % 3);
     const double far = random.log_uniform(1e12, 1e30);
     for (const double apart : {2.0, 2.0, 2.0, 2.0, 2.0, far, 2.0}) {
-      motion.poses.push_back({Pose{}, {apart * way}});
+      motion.poses.push_back({Pose{}, {apart * direction}});
     }
   }
   for (const std::int64_t target : vector_widths()) {

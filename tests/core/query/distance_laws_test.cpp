@@ -131,8 +131,8 @@ TEST(Distance, BoundsHoldEvenWhenTheStateIsNonsense) {
       TrackingState state = test::nonsense_state(e.a, e.b, random);
       const DistanceResult s = distance(e.a, e.b, e.pose(), state);
       // The value -infinity: two unbounded bodies that no translation separates.
-      const bool no_way_out = s.lower == -kInfinity && !e.a.bounded() && !e.b.bounded();
-      EXPECT_TRUE(no_way_out || (std::isfinite(s.distance) && std::isfinite(s.lower))) << e.name;
+      const bool inseparable = s.lower == -kInfinity && !e.a.bounded() && !e.b.bounded();
+      EXPECT_TRUE(inseparable || (std::isfinite(s.distance) && std::isfinite(s.lower))) << e.name;
       EXPECT_TRUE(s.distance <= s.upper && s.normal.allFinite()) << e.name;
       expect_same_truth(r, s, e.name);
     }

@@ -49,14 +49,15 @@ LevelBoxes level_boxes(Motion motion, std::uint64_t seed, bool rest = false) {
   made.gap = rest ? 0.0 : random.log_uniform(1e-3, 0.3);
   const Pose a = random.pose(2.0);
   const double angle = random.uniform(0.0, 6.3);
-  const Vec3 way = motion == Motion::kAlongFlushEdges ? Vec3(0, 1, 0)
-                                                      : Vec3(std::cos(angle), std::sin(angle), 0);
+  const Vec3 direction = motion == Motion::kAlongFlushEdges
+                             ? Vec3(0, 1, 0)
+                             : Vec3(std::cos(angle), std::sin(angle), 0);
   const double up = made.half_a.z() + made.half_b.z() + made.gap;
   for (int k = 0; k < kBoxSteps; ++k) {
-    Vec3 centre = kStep * (k - kBoxSteps / 2) * way;
+    Vec3 centre = kStep * (k - kBoxSteps / 2) * direction;
     Quat turn = Quat::Identity();
     if (motion == Motion::kSpinning) {
-      centre = 0.05 * way;  // the middle of either face lies within the other one
+      centre = 0.05 * direction;  // the middle of either face lies within the other one
       turn = turned(Vec3::UnitZ(), kTurn * k + angle);
     }
     centre.z() = up;
@@ -163,8 +164,8 @@ TEST(LevelBoxes, WithParallelAxesStartColdAtTheFeaturesThatFaceEachOther) {
   Random random(5);
   for (const Quat& rotation : axis_rotations()) {
     const Vec3 half_b = (rotation * (0.5 * (high_b - low_b))).cwiseAbs();
-    for (int way = 0; way < 27; ++way) {
-      const Vec3 sign(way % 3 - 1, way / 3 % 3 - 1, way / 9 - 1);
+    for (int direction = 0; direction < 27; ++direction) {
+      const Vec3 sign(direction % 3 - 1, direction / 3 % 3 - 1, direction / 9 - 1);
       if (sign.isZero()) continue;
       const Vec3 gap(0.11, 0.23, 0.37);
       const Vec3 centre = sign.cwiseProduct(half_a + half_b + gap) + Vec3(0.01, -0.02, 0.03);
@@ -175,11 +176,11 @@ TEST(LevelBoxes, WithParallelAxesStartColdAtTheFeaturesThatFaceEachOther) {
           (gap + sign.cwiseProduct(Vec3(0.01, -0.02, 0.03))).cwiseProduct(sign).norm();
       TrackingState state;
       const DistanceResult result = judge.ask(a, b, state);
-      EXPECT_NEAR(result.distance, expected, 1e-13) << way;
-      EXPECT_EQ(result.path, DistancePath::kFeatureTracking) << way;
-      EXPECT_EQ(result.iterations, 1) << way;
+      EXPECT_NEAR(result.distance, expected, 1e-13) << direction;
+      EXPECT_EQ(result.path, DistancePath::kFeatureTracking) << direction;
+      EXPECT_EQ(result.iterations, 1) << direction;
       for (const std::string& fault : judge.faults(result, judge.truth(a, b), a, b))
-        ADD_FAILURE() << way << ": " << fault;
+        ADD_FAILURE() << direction << ": " << fault;
     }
   }
 }
@@ -196,10 +197,10 @@ TEST(LevelBoxes, ThatOverlapDeeplyHaveTheDepthOfTheirPrisms) {
     const Quat turn =
         axis_rotations()[seed % 24] *
         (seed % 2 == 0 ? Quat::Identity() : turned(Vec3::UnitZ(), random.uniform(0.0, 1.5)));
-    const Vec3 way = random.direction(), beside = 0.1 * random.direction();
+    const Vec3 direction = random.direction(), beside = 0.1 * random.direction();
     TrackingState tracked;
     for (int k = 0; k < kBoxSteps; ++k) {
-      const Vec3 centre = 0.02 * (k - kBoxSteps / 2) * way + beside;
+      const Vec3 centre = 0.02 * (k - kBoxSteps / 2) * direction + beside;
       const Pose b = {a.position + a.orientation * centre, a.orientation * turn};
       TrackingState cold;
       const DistanceResult kept = judge.ask(a, b, tracked), found = judge.ask(a, b, cold);

@@ -26,10 +26,11 @@ struct PairOfPoses {
 // B rotates and moves around A in a spiral that closes after several thousand turns. At the closest
 // approach `near`, the bodies overlap.
 PairOfPoses around(double t, double near, double far) {
-  const Vec3 way(std::cos(t), std::sin(t) * std::cos(0.37 * t), std::sin(t) * std::sin(0.37 * t));
+  const Vec3 direction(std::cos(t), std::sin(t) * std::cos(0.37 * t),
+                       std::sin(t) * std::sin(0.37 * t));
   const double distance = near + (far - near) * (0.5 + 0.5 * std::cos(0.0171 * t));
   const Quat turn(std::cos(0.61 * t), 0.6 * std::sin(0.61 * t), 0.0, 0.8 * std::sin(0.61 * t));
-  return {{}, {distance * way, turn}};
+  return {{}, {distance * direction, turn}};
 }
 
 // Boxes 0.6 m high, one above the other, as level as quaternions can represent. B slides and

@@ -57,12 +57,12 @@ LyingSenders::LyingSenders(const Scene& scene, const TrueMotion& truth, const Se
 
 void LyingSenders::send(std::int64_t t) {
   keep_writers(t);
-  if (sending_.factor) under_way_.emplace(t, clock(t));
+  if (sending_.factor) in_flight_.emplace(t, clock(t));
   if (t == 0) {
     const RosMessage far =
         transforms(start_ns_, start_ns_, {{"map", "far", {kFarAway, 0, 0}}}, "/tf_static");
-    under_way_.emplace(t, Message{t, topic("/tf_static", kTfType), kMapMaker, start_ns_, far.cdr});
-    under_way_.emplace(t, camera_info(t));
+    in_flight_.emplace(t, Message{t, topic("/tf_static", kTfType), kMapMaker, start_ns_, far.cdr});
+    in_flight_.emplace(t, camera_info(t));
   }
   for (std::size_t i = 0; i < kChannels; ++i) {
     const auto channel = static_cast<Channel>(i);
@@ -124,7 +124,7 @@ void LyingSenders::speak_as_rival(Channel channel, const Rival& rival, std::int6
   sent.writer = writer_of(channel, true);
   sent.due = t;
   sent.sent_ns = start_ns_ + sending_.machine_time(t);
-  under_way_.emplace(t, std::move(sent));
+  in_flight_.emplace(t, std::move(sent));
 }
 
 LyingSenders::Words LyingSenders::words(Channel channel, const Told& told, std::int64_t t) const {
@@ -285,23 +285,23 @@ void LyingSenders::post(Message message, std::int64_t t, const Told& told, Chann
     for (const std::int64_t later : {std::int64_t{0}, 3 * kMs, 40 * kMs}) {
       Message again = message;
       again.due += later;
-      under_way_.emplace(again.due, std::move(again));
+      in_flight_.emplace(again.due, std::move(again));
     }
   }
-  under_way_.emplace(message.due, std::move(message));
+  in_flight_.emplace(message.due, std::move(message));
 }
 
 void LyingSenders::deliver(std::int64_t t) {
   const std::int64_t machine = sending_.machine_time(t);
   const Now now{.realtime_ns = start_ns_ + machine, .monotonic_ns = kSecond + machine};
-  const auto waits = under_way_.upper_bound(t);
-  for (auto each = under_way_.begin(); each != waits; ++each) {
+  const auto waits = in_flight_.upper_bound(t);
+  for (auto each = in_flight_.begin(); each != waits; ++each) {
     const Message& sent = each->second;
     EXPECT_TRUE(intake_.take(
         {.topic = sent.topic, .cdr = sent.cdr, .sent_ns = sent.sent_ns, .writer = sent.writer},
         now));
   }
-  under_way_.erase(under_way_.begin(), waits);
+  in_flight_.erase(in_flight_.begin(), waits);
   intake_.settle(now);
   static_cast<void>(intake_.take_news());
 }

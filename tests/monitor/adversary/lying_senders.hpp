@@ -106,7 +106,7 @@ class LyingSenders {
   std::array<bool, 2> by_ros_{};  // arm and post
   std::array<std::int64_t, kChannels> period_{}, last_due_{};
   std::array<std::uint64_t, 2 * kChannels> sequence_{};
-  std::multimap<std::int64_t, Message> under_way_;  // by Message::due, in the order of sending
+  std::multimap<std::int64_t, Message> in_flight_;  // by Message::due, in the order of sending
   std::vector<std::uint64_t> writers_;
 };
 

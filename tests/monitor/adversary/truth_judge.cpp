@@ -295,12 +295,12 @@ void TruthJudge::judge_separation(const PairSeparation& pair) {
   if (allowed_[first].is_speed_excused || allowed_[second].is_speed_excused) return;
   const std::size_t human = first == 0 ? first : second, robot = first == 0 ? second : first;
   const TruePoint between = centres_[0][robot] - centres_[0][human];
-  const TruePoint way = between / between.norm();
+  const TruePoint direction = between / between.norm();
   const long double per_second = 1e9L / static_cast<long double>(tick_);
   const auto human_speed =
-      static_cast<double>((centres_[0][human] - centres_[2][human]).dot(way) * per_second);
+      static_cast<double>((centres_[0][human] - centres_[2][human]).dot(direction) * per_second);
   const auto robot_speed =
-      static_cast<double>((centres_[2][robot] - centres_[0][robot]).dot(way) * per_second);
+      static_cast<double>((centres_[2][robot] - centres_[0][robot]).dot(direction) * per_second);
   const double slower = std::max(human_speed - pair.human_speed, robot_speed - pair.robot_speed);
   if (slower > kSpeedError) {
     note_false(Claim::kSpeed, slower - kSpeedError,

@@ -98,7 +98,7 @@ TEST(QuestionCompletion, RefusesAJointThatMovesUnlessTheQuestionSaysThatNothingE
   }
 }
 
-TEST(QuestionCompletion, MeasuresTheStartOfAnAngleThatWrapsByTheShorterWay) {
+TEST(QuestionCompletion, MeasuresTheStartOfAnAngleThatWrapsByTheShorterArc) {
   Known known;
   known.question.motion.joints = {"elbow"};
   known.question.motion.positions = {0.2 + 2.0 * std::acos(-1.0), 0.0};

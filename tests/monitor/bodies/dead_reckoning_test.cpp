@@ -210,7 +210,7 @@ TEST(DeadReckoning, ObjectIsUnknownWhileItsTwistLeadsElsewhere) {
     }
     if (known_again == 0 && tick >= 1000 && status != PairStatus::kUnknown) known_again = tick;
   }
-  EXPECT_GE(rejected(monitor, Reject::kOtherWay), 1u);
+  EXPECT_GE(rejected(monitor, Reject::kOtherDirection), 1u);
   EXPECT_NEAR(found_out, 33, 1);
   EXPECT_GT(known_again, 1000);
   EXPECT_LE(known_again, 1000 + 52 * 20);

@@ -35,7 +35,7 @@ TEST(Displacement, NoPointMovesFartherThanTheBound) {
   }
 }
 
-TEST(Displacement, NoPointIsEverFartherFromItsStraightWayThanTheBend) {
+TEST(Displacement, NoPointIsEverFartherFromItsStraightPathThanTheBend) {
   Random random(2);
   double tightest = 1.0;
   for (int i = 0; i < 5000; ++i) {
@@ -73,7 +73,7 @@ TEST(Displacement, EqualPosesAreExactlyNoMotionEvenOfUnboundedBodies) {
   EXPECT_EQ(moved_at_most(motion_between(pose, pose), kInfinity), 0.0);
 }
 
-TEST(Displacement, NorByWayOfAnyPoseOnTheStraightWayAndTheShorterTurn) {
+TEST(Displacement, NorThroughAnyPoseOnTheStraightPathAndTheShorterTurn) {
   Random random(4);
   for (int i = 0; i < 5000; ++i) {
     const Pose before = random.pose(5.0);

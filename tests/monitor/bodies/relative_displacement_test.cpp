@@ -37,8 +37,8 @@ Pose after(const Pose& pose, const Vec3& shift, const Vec3& turn) {
 }
 
 // The length of the path of a point of `of` in the frame of `seen_from`, summed over small steps.
-double length_of_way(const Pose& from, const Pose& to, const Pose& frame_from, const Pose& frame_to,
-                     const Vec3& point) {
+double path_length(const Pose& from, const Pose& to, const Pose& frame_from, const Pose& frame_to,
+                   const Vec3& point) {
   constexpr int kSteps = 50;
   double length = 0.0;
   Vec3 last = Vec3::Zero();
@@ -66,17 +66,17 @@ TEST(RelativeDisplacement, NoPointOfOneGoesFartherInTheFrameOfTheOther) {
     const Pose a_to = after(a, shift, turn);
     const Pose b_to = after(b, shift + differ * scale * random.in_box(1.0),
                             turn + differ * scale * random.in_box(0.5));
-    const TrackedObject of_a = gone(a, a_to, radius_a), of_b = gone(b, b_to, radius_b);
-    const double told = relative_displacement(of_a.body_motion(), of_b.body_motion());
-    ASSERT_EQ(told, relative_displacement(of_a.body_motion(), of_b.body_motion()));
+    const TrackedObject moved_a = gone(a, a_to, radius_a), moved_b = gone(b, b_to, radius_b);
+    const double told = relative_displacement(moved_a.body_motion(), moved_b.body_motion());
+    ASSERT_EQ(told, relative_displacement(moved_a.body_motion(), moved_b.body_motion()));
     const bool b_goes = radius_b <= radius_a;
     for (int k = 0; k < 4; ++k) {
       const Vec3 point = random.in_box(1.0).normalized() * (b_goes ? radius_b : radius_a);
-      const double way =
-          b_goes ? length_of_way(b, b_to, a, a_to, point) : length_of_way(a, a_to, b, b_to, point);
-      ASSERT_LE(way, told + 1e-13) << "case " << i;
+      const double length =
+          b_goes ? path_length(b, b_to, a, a_to, point) : path_length(a, a_to, b, b_to, point);
+      ASSERT_LE(length, told + 1e-13) << "case " << i;
     }
-    tighter += told < 0.9 * (of_a.displacement + of_b.displacement);
+    tighter += told < 0.9 * (moved_a.displacement + moved_b.displacement);
   }
   EXPECT_GT(tighter, 1500);
 }

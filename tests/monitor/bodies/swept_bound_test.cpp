@@ -68,9 +68,9 @@ struct Flight {
   }
 };
 
-TEST(SweptBound, NoInstantOfTheWayIsNearerThanReported) {
+TEST(SweptBound, NoInstantOfThePathIsNearerThanReported) {
   Random random(401);
-  int ways = 0, close = 0;
+  int paths = 0, close = 0;
   for (int i = 0; i < 240; ++i) {
     Watched pair(any_body(random, i % 4), any_body(random, i / 4 % 4));
     const double scale = std::pow(10.0, random.uniform(-3.5, -0.5));
@@ -86,17 +86,17 @@ TEST(SweptBound, NoInstantOfTheWayIsNearerThanReported) {
         ASSERT_LE(report.swept_lower, pair.truth(0.05 * k) + 1e-12)
             << "case " << i << " tick " << t;
       }
-      ways += t > 0 && report.lower > 0.0;
+      paths += t > 0 && report.lower > 0.0;
       close += t > 0 && report.swept_lower > std::min(last, report.lower) - 0.1 * scale;
       last = report.lower;
     }
   }
-  EXPECT_GT(close, ways / 2) << "of " << ways << ": mostly hardly less than the nearer end";
+  EXPECT_GT(close, paths / 2) << "of " << paths << ": mostly hardly less than the nearer end";
 }
 
 // A distance of 5 cm at 2 m/s and 2 rad/s. The displacement alone would leave a millimetre
 // undecided.
-TEST(SweptBound, IsNoLooserThanTheBendOfTheWayWhileTheSameFacetsFaceEachOther) {
+TEST(SweptBound, IsNoLooserThanTheBendOfThePathWhileTheSameFacetsFaceEachOther) {
   Watched pair(test::moving("a", {test::block({0.1, 0.1, 0.1})}),
                test::moving("b", {test::block({0.2, 0.2, 0.1})}));
   double last = 0.0;

@@ -125,7 +125,7 @@ TEST_F(Variable, PositionsThatItCannotHaveAreRefusedAndNothingButItsLimitsIsKnow
 }
 
 // Many robot descriptions state wrong velocity limits.
-TEST_F(Variable, AVelocityThatIsSentMayExceedTheLimitAndSoMayTheWay) {
+TEST_F(Variable, AVelocityThatIsSentMayExceedTheLimitAndSoMayThePath) {
   JointSample fast = at(0, 0.0);
   fast.has_velocity = true;
   fast.velocity = 6.0;
@@ -226,7 +226,7 @@ TEST_F(LyingVariable, PositionsAtHalfTheSpeedAreFoundOut) {
   EXPECT_TRUE(state_.input.late);
 }
 
-TEST_F(LyingVariable, VelocitiesOfZeroGiveWayToDifferences) {
+TEST_F(LyingVariable, VelocitiesOfZeroYieldToDifferences) {
   bool is_told = false;
   for (std::int64_t ms = 0; ms < 3000; ++ms) {
     ASSERT_EQ(take_both(ms * kVariableMs, truth(ms * kVariableMs), 0.0), std::nullopt);
@@ -247,7 +247,7 @@ TEST_F(LyingVariable, VelocitiesOfZeroGiveWayToDifferences) {
 }
 
 // The larger of the two speeds counts, in the direction of the positions.
-TEST_F(LyingVariable, VelocitiesOfTheWrongSignGiveWayToPositions) {
+TEST_F(LyingVariable, VelocitiesOfTheWrongSignYieldToPositions) {
   for (std::int64_t ms = 0; ms < 2000; ++ms) {
     ASSERT_EQ(take_both(ms * kVariableMs, truth(ms * kVariableMs), -speed(ms * kVariableMs)),
               std::nullopt)

@@ -28,7 +28,7 @@ TEST(DaemonIdentity, IsNotReadFromOtherPrograms) {
   }
 }
 
-TEST(DaemonIdentity, ExactlyOneOfTwoGivesWay) {
+TEST(DaemonIdentity, ExactlyOneOfTwoYields) {
   const DaemonIdentity early{.id = 9, .start_ns = 100}, late{.id = 1, .start_ns = 101},
       as_late{.id = 2, .start_ns = 101};
   EXPECT_TRUE(yields_to(late, early));

@@ -156,7 +156,7 @@ Outcome outcome_of(const Chunk& chunk) {
   return outcome;
 }
 
-TEST(CompressedChunk, IsReadWhicheverWayItIsCompressed) {
+TEST(CompressedChunk, IsReadHoweverItIsCompressed) {
   const Bytes records = records_of_one_message();
   for (const McapCompression how : kCompressions) {
     const Outcome outcome =

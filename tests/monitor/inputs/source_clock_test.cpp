@@ -70,7 +70,7 @@ TEST(SourceClock, ProgramOfThisMachineIsFollowedAfterAStepThatOnlySomeStampsShow
   for (; ms < 1500; ++ms) ASSERT_EQ(stream.age_ms(ms, ms + latency(ms)), latency(ms));
 }
 
-TEST(SourceClock, PosesUnderWayWhileTheClockIsSteppedKeepTheirAge) {
+TEST(SourceClock, PosesInFlightWhileTheClockIsSteppedKeepTheirAge) {
   for (const std::int64_t step : {-2000, 2000}) {
     StampStream stream;
     EXPECT_EQ(stream.age_ms(0, 1), 1);

@@ -45,7 +45,7 @@ struct TrueSource {
   bool lied = false;  // its last received pose was wrong, in position or time
 };
 
-struct BatchUnderWay {
+struct BatchInFlight {
   std::int64_t comes = 0;
   PoseBatch batch;
   bool lies = false;
@@ -69,7 +69,7 @@ class HostileWorld final : public Clock, public PoseSource, public ReportSink {
 
   const PoseBatch* next() noexcept override {
     for (std::size_t i = 0; i < sources_.size(); ++i) {
-      auto& queue = under_way_[i];
+      auto& queue = in_flight_[i];
       if (queue.empty() || queue.front().comes > now_) continue;
       sources_[i].lied = queue.front().lies || is_dated_well_by_chance(queue.front());
       given_ = std::move(queue.front().batch);
@@ -95,7 +95,7 @@ class HostileWorld final : public Clock, public PoseSource, public ReportSink {
     now_ += kTick / 4;
     if (now_ > kCalm) disturb();
     for (std::size_t i = 0; i < sources_.size(); ++i) {
-      if (now_ >= sources_[i].sends_next) send(sources_[i], under_way_[i]);
+      if (now_ >= sources_[i].sends_next) send(sources_[i], in_flight_[i]);
     }
   }
 
@@ -126,7 +126,7 @@ class HostileWorld final : public Clock, public PoseSource, public ReportSink {
     return static_cast<std::int64_t>(below(2) == 0 ? size : -size);
   }
 
-  void send(TrueSource& source, std::deque<BatchUnderWay>& queue) {
+  void send(TrueSource& source, std::deque<BatchInFlight>& queue) {
     source.sends_next = now_ + kTick + below(3 * kTick);
     ++source.sequence;
     if (now_ < source.lost_until) return;
@@ -172,7 +172,7 @@ class HostileWorld final : public Clock, public PoseSource, public ReportSink {
 
   // The batch is from a machine whose clock is ahead, and is late by about as much, so its stamp
   // does not show the delay.
-  bool is_dated_well_by_chance(const BatchUnderWay& batch) const {
+  bool is_dated_well_by_chance(const BatchInFlight& batch) const {
     return batch.clock_ahead > 0 && batch.made + batch.clock_ahead <= now_ + scene_.future_limit_ns;
   }
 
@@ -215,7 +215,7 @@ class HostileWorld final : public Clock, public PoseSource, public ReportSink {
   const Scene& scene_;
   Random random_;
   std::vector<TrueSource> sources_;
-  std::array<std::deque<BatchUnderWay>, 4> under_way_;
+  std::array<std::deque<BatchInFlight>, 4> in_flight_;
   PoseBatch given_;
   std::int64_t now_ = 0, wall_ahead_ = 0;
   std::uint64_t known_ = 0, unknown_ = 0;

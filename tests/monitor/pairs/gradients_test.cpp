@@ -90,8 +90,8 @@ TEST(Gradients, OfTwoLinksAndSpheresAreTheClosedForm) {
                  s = random.uniform(0.0, 0.2);
     const Vec3 tip(std::cos(a) + (1.0 + s) * std::cos(a + b),
                    std::sin(a) + (1.0 + s) * std::sin(a + b), 0.0);
-    const Vec3 way = random.direction() * (i % 4 == 0 ? 0.1 : random.uniform(0.3, 2.0));
-    const Vec3 cart_velocity = random.in_box(1.0), u = way.normalized();
+    const Vec3 offset = random.direction() * (i % 4 == 0 ? 0.1 : random.uniform(0.3, 2.0));
+    const Vec3 cart_velocity = random.in_box(1.0), u = offset.normalized();
     const std::array rates{random.uniform(-2.0, 2.0), random.uniform(-2.0, 2.0),
                            random.uniform(-0.4, 0.4)};
     auto samples = joints(a, b, s, kStart);
@@ -101,7 +101,7 @@ TEST(Gradients, OfTwoLinksAndSpheresAreTheClosedForm) {
     }
     Monitor monitor(cell);
     const Report& report =
-        monitor.tick(std::array{cart_at(tip + way, cart_velocity, kStart)}, samples, kStart);
+        monitor.tick(std::array{cart_at(tip + offset, cart_velocity, kStart)}, samples, kStart);
     const Row row = row_between(cell, report, "cart", "finger");
     // The tip moves with all joints: both angles rotate it, and the finger's slide extends it.
     const Vec3 by_elbow((1.0 + s) * -std::sin(a + b), (1.0 + s) * std::cos(a + b), 0.0);

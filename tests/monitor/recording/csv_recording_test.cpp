@@ -57,7 +57,7 @@ TEST_F(CsvRecording, WithoutACellObjectsAreNamedInTheOrderOfAppearance) {
   EXPECT_STREQ("hand", catalogue->objects._buffer[1].name);
 }
 
-TEST_F(CsvRecording, StoppedHalfWayItSaysHowFarItCame) {
+TEST_F(CsvRecording, StoppedInTheMiddleItSaysHowFarItCame) {
   std::string log = kHeader;
   for (int row = 0; row < 3000; ++row) log += std::to_string(row) + ",tool,1,2,3,1,0,0,0\n";
   write_text(folder / "log.csv", log);

@@ -22,9 +22,9 @@ struct Motion2 {
 };
 
 // Two objects of one part each, and their motion from one tick to the next.
-class TwoOnTheirWay {
+class TwoInMotion {
  public:
-  TwoOnTheirWay(Part a, Part b, const Motion2& motion)
+  TwoInMotion(Part a, Part b, const Motion2& motion)
       : scene_(
             test::cell_of({test::moving("a", {std::move(a)}), test::moving("b", {std::move(b)})})),
         motion_(motion),
@@ -114,7 +114,7 @@ TEST(SweptSearch, NoInstantIsNearerThanTheBoundAndSomeInstantIsAsNearAsTheOther)
   Random random(91);
   int outside = 0, inside = 0;
   for (int i = 0; i < 1500; ++i) {
-    TwoOnTheirWay pair(any_part(random), any_part(random), any_motion(random));
+    TwoInMotion pair(any_part(random), any_part(random), any_motion(random));
     const double level = random.uniform(-0.05, 0.6);
     const SweptBounds bounds = pair.decide(level);
     double least = kInfinity;
@@ -132,11 +132,11 @@ TEST(SweptSearch, NoInstantIsNearerThanTheBoundAndSomeInstantIsAsNearAsTheOther)
   EXPECT_GT(outside + inside, 1490) << "the rest is as near to the level as no query tells";
 }
 
-TEST(SweptSearch, BothEndsTellAllOfAStraightWay) {
+TEST(SweptSearch, BothEndsTellAllOfAStraightPath) {
   Motion2 motion;
   motion.from = {test::at(0, 0, 0), test::at(-1.0, 0, 0.2)};
   motion.to = {test::at(0, 0, 0), test::at(1.0, 0, 0.2)};
-  TwoOnTheirWay pair(test::block({0.4, 0.4, 0.1}), test::block({0.05, 0.05, 0.05}), motion);
+  TwoInMotion pair(test::block({0.4, 0.4, 0.1}), test::block({0.05, 0.05, 0.05}), motion);
   const SweptBounds bounds = pair.decide(0.04);
   EXPECT_GE(bounds.lower, 0.04) << "it passes 5 cm above";
   EXPECT_LE(bounds.lower, 0.05);
@@ -147,7 +147,7 @@ TEST(SweptSearch, ApproachingIsNearestAtTheEndAndTellsSoByTwoQueries) {
   Motion2 motion;
   motion.from = {test::at(0, 0, 0), test::at(0.1, 0.03, 1.2)};
   motion.to = {test::at(0, 0, 0), test::at(0, 0, 0.3)};
-  TwoOnTheirWay pair(test::block({0.4, 0.4, 0.1}), test::block({0.05, 0.05, 0.05}), motion);
+  TwoInMotion pair(test::block({0.4, 0.4, 0.1}), test::block({0.05, 0.05, 0.05}), motion);
   EXPECT_NEAR(pair.decide(0.15 - 1e-9).lower, 0.15, 1e-9);
   EXPECT_EQ(pair.queries(), 2u);
 }
@@ -157,7 +157,7 @@ TEST(SweptSearch, AThrownNeedleIsFoundInThePlateThatItFliesThrough) {
   motion.from = {test::at(0, 0, 0), test::at(0.01, 0.02, -0.5)};
   motion.to = {test::at(0, 0, 0), test::at(0.0, 0.0, 0.7)};
   motion.to[1].orientation = Eigen::Quaterniond(Eigen::AngleAxisd(0.8, Vec3::UnitY()));
-  TwoOnTheirWay pair(test::block({1.0, 1.0, 0.001}), test::block({0.002, 0.002, 0.02}), motion);
+  TwoInMotion pair(test::block({1.0, 1.0, 0.001}), test::block({0.002, 0.002, 0.02}), motion);
   EXPECT_GT(pair.truth(0.0).lower, 0.4);
   EXPECT_GT(pair.truth(1.0).lower, 0.6);
   const SweptBounds bounds = pair.decide(0.0);
@@ -173,7 +173,7 @@ TEST(SweptSearch, BodiesThatMoveTogetherDoNotMove) {
     motion.to[i].position = turn * motion.from[i].position + Vec3(0.5, 0, 0);
     motion.to[i].orientation = turn;
   }
-  TwoOnTheirWay pair(test::block({0.4, 0.4, 0.1}), test::block({0.2, 0.2, 0.2}), motion);
+  TwoInMotion pair(test::block({0.4, 0.4, 0.1}), test::block({0.2, 0.2, 0.2}), motion);
   EXPECT_GT(pair.decide(0.0005).lower, 0.0005) << "one millimetre between them";
   EXPECT_LE(pair.queries(), 4u);
 }
@@ -183,7 +183,7 @@ TEST(SweptSearch, AFloorThatTurnsIsBoundedAsSeenFromTheFloor) {
   motion.from = {test::at(0, 0, 0), test::at(0.3, 0, 0.5)};
   motion.to = {test::at(0, 0, 0), test::at(0.3, 0, 0.5)};
   motion.to[0].orientation = Eigen::Quaterniond(Eigen::AngleAxisd(0.1, Vec3::UnitY()));
-  TwoOnTheirWay pair(test::floor(), test::ball(0.1), motion);
+  TwoInMotion pair(test::floor(), test::ball(0.1), motion);
   const SweptBounds bounds = pair.decide(0.3);
   EXPECT_GE(bounds.lower, 0.3);
   EXPECT_LE(bounds.lower, 0.4);
@@ -195,7 +195,7 @@ TEST(SweptSearch, BoundsOfAnInstantBetweenAllowForTheRoundingOfItsPose) {
   constexpr double kFar = 0x1p20;
   const Motion2 past{{test::at(kFar, -1, 0), test::at(kFar + 0.5, 0, 0)},
                      {test::at(kFar, 1, 0), test::at(kFar + 0.5, 0, 0)}};
-  TwoOnTheirWay balls(test::ball(0.1), test::ball(0.1), past);
+  TwoInMotion balls(test::ball(0.1), test::ball(0.1), past);
   const SweptBounds bounds = balls.decide(0.31);
   EXPECT_LT(bounds.upper, 0.31);
   EXPECT_GE(bounds.upper, balls.truth(0.5).upper + 0.9 * kInterpolationError * (4.0 * kFar));
@@ -209,7 +209,7 @@ TEST(SweptSearch, BoundsOfAnInstantBetweenAllowForTheRoundingOfItsOrientation) {
     return Pose{Vec3::Zero(), Eigen::Quaterniond(Eigen::AngleAxisd(angle, Vec3::UnitZ()))};
   };
   const Pose post = test::at(kLong + 0.5, 0, 0);
-  TwoOnTheirWay arm(tip, test::ball(0.1), {{turned(-1e-3), post}, {turned(1e-3), post}});
+  TwoInMotion arm(tip, test::ball(0.1), {{turned(-1e-3), post}, {turned(1e-3), post}});
   const SweptBounds bounds = arm.decide(0.301);
   EXPECT_LT(bounds.upper, 0.301);
   const double of_place = kInterpolationError * 2.0 * (kLong + 0.5);
@@ -220,7 +220,7 @@ TEST(SweptSearch, BoundsOfAnInstantBetweenAllowForTheRoundingOfItsOrientation) {
 TEST(SweptSearch, TheBoundBetweenTwoInstantsAllowsForTheRoundingOfItsSums) {
   for (const double apart : {0.5, 3.0, 1e4}) {
     const std::array resting{test::at(0, 0, 0), test::at(0, 0, apart)};
-    TwoOnTheirWay pair(test::ball(0.1), test::ball(0.1), {resting, resting});
+    TwoInMotion pair(test::ball(0.1), test::ball(0.1), {resting, resting});
     const double lower = pair.at_end().lower;
     EXPECT_LE(pair.decide(0.1).lower, lower * (1.0 - 0.9 * 0x1p-47)) << apart;
     EXPECT_GE(pair.decide(0.1).lower, lower * (1.0 - 0x1p-44)) << apart;
@@ -234,7 +234,7 @@ TEST(SweptSearch, ABoundAlongADirectionAllowsForTheRoundingOfTheDirection) {
   Motion2 past;
   past.from = {test::at(kFar, 0, 0), test::at(kFar, -1.0, 1.0)};
   past.to = {test::at(kFar, 0, 0), test::at(kFar, 1.0, 1.0)};
-  TwoOnTheirWay pair(test::block({0.1, 4.0, 0.1}), test::block({0.1, 0.1, 0.1}), past);
+  TwoInMotion pair(test::block({0.1, 4.0, 0.1}), test::block({0.1, 0.1, 0.1}), past);
   const double error = 0x1p-44 * 6.0 * kFar;
   const double lower = pair.decide(0.5).lower;
   EXPECT_LE(lower, pair.at_end().lower - 0.45 * error);
@@ -248,7 +248,7 @@ TEST(SweptSearch, AnOldBoundIsReducedByAllMotionSinceThenAndByThatOfThisTick) {
   Motion2 motion;
   motion.from = {test::at(0, 0, 0), test::at(1.0, 0, 0)};
   motion.to = {test::at(0, 0, 0), test::at(0.5, 0, 0)};
-  TwoOnTheirWay balls(test::ball(0.1), test::ball(0.1), motion);
+  TwoInMotion balls(test::ball(0.1), test::ball(0.1), motion);
   const double lower = balls.from_old_bound(1.3, 0.5).lower;
   EXPECT_LE(lower, balls.truth(1.0).upper);
   EXPECT_NEAR(lower, 1.3 - 0.5 - 0.5 - 0.5, 1e-12) << "before this tick, in it, and back again";
@@ -256,7 +256,7 @@ TEST(SweptSearch, AnOldBoundIsReducedByAllMotionSinceThenAndByThatOfThisTick) {
 
 TEST(SweptSearch, WithoutQueriesNothingIsTold) {
   Random random(92);
-  TwoOnTheirWay pair(any_part(random), any_part(random), any_motion(random));
+  TwoInMotion pair(any_part(random), any_part(random), any_motion(random));
   EXPECT_EQ(pair.decide(0.1, 1).lower, -kInfinity);
   EXPECT_EQ(pair.queries(), 0u);
 }
@@ -310,7 +310,7 @@ TEST_F(FlyBy, AZoneIsNotEnteredByWhatFliesPastOutside) {
   EXPECT_GE(report.pairs[0].swept_lower, 0.05);
 }
 
-TEST_F(FlyBy, FirstPosesAndThoseAfterAGapHaveNoWayBehindThem) {
+TEST_F(FlyBy, FirstPosesAndThoseAfterAGapHaveNoPathBehindThem) {
   Monitor monitor(scene_);
   const Report& first = tick(monitor, test::at(0, 0, 1.0));
   EXPECT_FALSE(first.zones[0].active);

@@ -22,10 +22,10 @@ TEST(PastFrames, ThatBeginToMoveOrStopBetweenTwoTransformsAreWithinTheErrorOfThe
   for (int run = 0; run < 500; ++run) {
     // The frame moves on a straight path from one time to another, at any time in between.
     const double begins = random.uniform(-0.5, 1.0), ends = begins + random.uniform(0.05, 1.0);
-    const double way = random.uniform(0.0, 0.5), turn = random.uniform(0.0, 2.0);
+    const double path = random.uniform(0.0, 0.5), turn = random.uniform(0.0, 2.0);
     const auto truth = [&](double s) {
       const double share = std::clamp((s - begins) / (ends - begins), 0.0, 1.0);
-      Pose pose = test::at(way * share, 0, 0);
+      Pose pose = test::at(path * share, 0, 0);
       pose.orientation = Eigen::AngleAxisd(turn * share, Vec3::UnitZ());
       return pose;
     };
@@ -42,7 +42,7 @@ TEST(PastFrames, ThatBeginToMoveOrStopBetweenTwoTransformsAreWithinTheErrorOfThe
       EXPECT_LE((at.position - found.position).norm(), step->shift_error + 1e-9);
       EXPECT_LE(at.orientation.angularDistance(found.orientation), step->turn_error + 1e-9);
     }
-    EXPECT_LE(step->shift_error, way + 1e-9);
+    EXPECT_LE(step->shift_error, path + 1e-9);
   }
 }
 

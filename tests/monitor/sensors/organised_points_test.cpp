@@ -236,10 +236,10 @@ TEST(OrganisedPoints, ContainEachPlaneUpToTheStatedSteepnessOrRefuseItsFrame) {
     for (std::size_t a = 0; a + picture.width + 1 < picture.points.size(); ++a) {
       if ((a + 1) % picture.width == 0) continue;
       const std::array cell{a, a + 1, a + picture.width, a + picture.width + 1};
-      const auto way = [&](std::size_t i, std::size_t k) {
+      const auto length = [&](std::size_t i, std::size_t k) {
         return (picture.truth[i].normalized() - picture.truth[k].normalized()).norm();
       };
-      const double diagonal = std::max(way(cell[0], cell[3]), way(cell[1], cell[2]));
+      const double diagonal = std::max(length(cell[0], cell[3]), length(cell[1], cell[2]));
       const double steepest = std::min(80.0 * std::numbers::pi / 180.0, std::atan(0.1 / diagonal));
       const double incidence = std::acos(std::ranges::min(
           std::array{along(cell[0]), along(cell[1]), along(cell[2]), along(cell[3])}));

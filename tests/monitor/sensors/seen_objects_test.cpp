@@ -173,9 +173,9 @@ TEST_F(SeenObjects, MayHaveMovedSinceTheirFrameByTheSpeedThatTheyState) {
   show_point(1.0);
   for (int t = 1; t <= 20; ++t) {
     const PairReport& pair = tick();
-    const double way = 2.0 * t * 1e-3;
-    EXPECT_NEAR(pair.lower, 0.75 - way, 1e-6) << t;
-    EXPECT_NEAR(pair.upper, 0.75 + way, 1e-6) << t;
+    const double path = 2.0 * t * 1e-3;
+    EXPECT_NEAR(pair.lower, 0.75 - path, 1e-6) << t;
+    EXPECT_NEAR(pair.upper, 0.75 + path, 1e-6) << t;
     EXPECT_EQ(pair.status, t <= 10 ? PairStatus::kConverged : PairStatus::kStale) << t;
   }
 }

@@ -126,7 +126,7 @@ TEST_F(TickStates, UseBatchesOfTheScenesBeforeAndOfNoOther) {
   EXPECT_EQ(state.samples()[2].object, 0u) << "d";
 }
 
-TEST_F(TickStates, JoinNoStateWhileASuccessorIsUnderWayOrOfAnotherScene) {
+TEST_F(TickStates, JoinNoStateWhileASuccessorIsBeingMadeOrOfAnotherScene) {
   TickState leader(first), state(first);
   for (int i = 0; i < 10; ++i) tick(leader, i);
   Successor saved(leader, first, no_records);

@@ -54,7 +54,7 @@ TEST(Separation, OfARobotThatApproachesHasTheTermsOfTheStandard) {
   EXPECT_GT(pair.speed_limit, 0.8);
 }
 
-TEST(Separation, OfARobotThatStandsOrRecedesIsThePersonsWayAlone) {
+TEST(Separation, OfARobotThatStandsOrRecedesIsThePersonsPathAlone) {
   for (const double speed : {0.0, -0.5}) {
     Meeting meeting;
     const PairSeparation& pair = meeting.tick(2.0, 0.0, speed);

@@ -15,8 +15,11 @@ namespace {
 // FCL's solvers are functions of the shapes' types. Selects the one for a pair of types.
 template <class Use>
 void with_types(const FclShape& a, const FclShape& b, const Use& use) {
-  std::visit([&](const auto& of_a) { std::visit([&](const auto& of_b) { use(*of_a, *of_b); }, b); },
-             a);
+  std::visit(
+      [&](const auto& shape_a) {
+        std::visit([&](const auto& shape_b) { use(*shape_a, *shape_b); }, b);
+      },
+      a);
 }
 
 class Pair {

@@ -56,12 +56,12 @@ inline void let_go(ActiveFeature& side, const Lambda& l) {
 template <Release kRelease>
 bool release_best(ActiveFeature& a, ActiveFeature& b, double least) {
   const Vec3 towards = b.point_A() - a.point_A();
-  const Lambda of_a = lambda(a, towards), of_b = lambda(b, -towards);
-  const bool a_wants = of_a.derivative > least, b_wants = of_b.derivative > least;
+  const Lambda lambda_a = lambda(a, towards), lambda_b = lambda(b, -towards);
+  const bool a_wants = lambda_a.derivative > least, b_wants = lambda_b.derivative > least;
   const bool both = kRelease == Release::kDual;
-  const bool a_first = of_a.derivative >= of_b.derivative;
-  if (a_wants && (both || a_first)) let_go(a, of_a);
-  if (b_wants && (both || !a_first)) let_go(b, of_b);
+  const bool a_first = lambda_a.derivative >= lambda_b.derivative;
+  if (a_wants && (both || a_first)) let_go(a, lambda_a);
+  if (b_wants && (both || !a_first)) let_go(b, lambda_b);
   return a_wants || b_wants;
 }
 

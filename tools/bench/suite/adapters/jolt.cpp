@@ -126,9 +126,9 @@ std::vector<Rival> jolt_rivals() {
   JPH::RegisterDefaultAllocator();
   return {{"Jolt", "floats, its default tolerances (1e-4), last axis, EPA", true,
            [](const PlainBody& a, const PlainBody& b) -> std::unique_ptr<RivalPair> {
-             Shape of_a = shape_of(a), of_b = shape_of(b);
-             if (of_a.shape == nullptr || of_b.shape == nullptr) return nullptr;
-             return std::make_unique<JoltPair>(std::move(of_a), std::move(of_b));
+             Shape shape_a = shape_of(a), shape_b = shape_of(b);
+             if (shape_a.shape == nullptr || shape_b.shape == nullptr) return nullptr;
+             return std::make_unique<JoltPair>(std::move(shape_a), std::move(shape_b));
            }}};
 }
 
