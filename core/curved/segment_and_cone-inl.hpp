@@ -1,4 +1,5 @@
-// A point or a segment, and a truncated cone: a sphere or a capsule beside a cylinder or a cone.
+// A point or a segment, and a truncated cone: a sphere or a capsule beside a cylinder or a cone, or
+// a sphere whose centre is inside.
 // Compiled once per vector width: see core/numerics/vec4-inl.hpp.
 //
 // In the half-plane through a point that the axis bounds, the truncated cone is a trapezoid. The
@@ -66,12 +67,27 @@ HWY_INLINE SectionPoint nearest_on_section(const std::array<Disc, 2>& discs, con
   return {{rim.radius, rim.height}, {inverse * from.across, inverse * from.height}};
 }
 
+// The same for a point inside.
+HWY_INLINE SectionPoint nearest_from_inside(const std::array<Disc, 2>& discs, const Section& p) {
+  const auto& [low, high] = discs;
+  const Section side{high.radius - low.radius, high.height - low.height};
+  const double inverse = 1.0 / std::sqrt(dot(side, side));
+  const Section out{inverse * side.height, -inverse * side.across};
+  const double beyond = dot(out, {p.across - low.radius, p.height - low.height});
+  const double above = p.height - high.height, below = low.height - p.height;
+  if (beyond >= std::max(above, below)) {
+    return {{p.across - beyond * out.across, p.height - beyond * out.height}, out};
+  }
+  return above >= below ? SectionPoint{{p.across, high.height}, {0.0, 1.0}}
+                        : SectionPoint{{p.across, low.height}, {0.0, -1.0}};
+}
+
 // A point in the cone's frame, and the closest point of the cone.
 struct ConePoint {
-  HWY_INLINE ConePoint(const std::array<Disc, 2>& discs, Vec4 place)
+  HWY_INLINE ConePoint(const std::array<Disc, 2>& discs, Vec4 place, bool is_inside = false)
       : placed(place),
         p{across_axis(place), lane(place, 2)},
-        section(nearest_on_section(discs, p)) {
+        section(is_inside ? nearest_from_inside(discs, p) : nearest_on_section(discs, p)) {
     const auto& [closest, normal] = section;
     const bool over_cap = normal.across == 0.0;  // there the point may be on the axis
     const double part = over_cap ? 1.0 : closest.across / p.across;
@@ -95,6 +111,11 @@ struct ConePoint {
 // the normal, 3 for their product, and 16 for the normal's component along the segment. If the cone
 // is B, the rotation's error moves the segment as well.
 inline constexpr double kUlpsOfPlacedSegment = 30;
+// The same in ulps of the cone's bounding radius, for the normal of a side that is nearest to a
+// point inside: 1 for its direction, which twice that radius multiplies, and 3 for the product.
+inline constexpr double kUlpsOfSide = 8;
+// Nearer to the axis, the square of the distance from it loses digits, m.
+inline constexpr double kBesideAxis = 1e-100;
 // Derivatives below this are 0 within rounding.
 inline constexpr double kLevelSlope = 0x1p-49;
 
@@ -135,23 +156,34 @@ HWY_INLINE bool segment_and_cone_distance(const ConvexBody& a, const ConvexBody&
     local = start + s * direction;
   }
   const auto& [closest, normal] = nearest.section;
-  const auto support = [&](const Disc& disc) HWY_ATTR {
-    return dot(normal, {disc.radius, disc.height});
+  const auto along_normal = [&]() HWY_ATTR {
+    const auto support = [&](const Disc& disc) HWY_ATTR {
+      return dot(normal, {disc.radius, disc.height});
+    };
+    return dot(normal, nearest.p) - std::max(support(discs[0]), support(discs[1]));
   };
   const Section gap{nearest.p.across - closest.across, nearest.p.height - closest.height};
   const double offset = a_from_b.translation_length;
   const double size = size_of(a, b, offset);
   CurvedConclusion found;
-  found.lower = (dot(normal, nearest.p) - std::max(support(discs[0]), support(discs[1]))) - behind;
+  found.lower = along_normal() - behind;
   found.upper = std::sqrt(dot(gap, gap));
   const bool known =
       found.lower > 0.0 && normal.across >= 0.0 && found.upper - found.lower <= 0x1p-50 * size;
-  if (HWY_UNLIKELY(!known)) return false;
+  const bool may_be_inside = !known && is_point(segment) && nearest.p.across > kBesideAxis;
+  if (HWY_UNLIKELY(may_be_inside)) {
+    nearest = ConePoint(discs, placed, true);
+    found.lower = found.upper = along_normal();
+  }
   found.error =
       rounding_error({&a, a.bounding_radius}, {&b, b.bounding_radius}, place_of(a_from_b),
                      found.upper, size) +
       (kUlpsOfPlacedSegment * kUlp + (kConeIsA ? 0.0 : kRoundedUp * a_from_b.rotation_error)) *
-          (segment.bounding_radius + offset);
+          (segment.bounding_radius + offset) +
+      (may_be_inside ? kUlpsOfSide * kUlp * cone.bounding_radius : 0.0);
+  // Beside a rim or an apex, a point outside may be farther than from each plane.
+  const bool is_inside = may_be_inside && found.upper < -2.0 * found.error;
+  if (HWY_UNLIKELY(!known && !is_inside)) return false;
   found.size = size;
   if constexpr (kConeIsA) {
     found.normal = vec3(nearest.outward);

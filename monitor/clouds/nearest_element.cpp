@@ -24,6 +24,10 @@ constexpr double kSpareToRemove = 2e-3;
 // Planes towards more children of a group than this cost more queries than they save.
 constexpr int kAsksOfAGroup = 2;
 
+bool is_ellipsoid(const ConvexBody& part) noexcept {
+  return part.curved.kind == CurvedShape::Kind::kEllipsoid;
+}
+
 template <class Elements>
 class Search {
  public:
@@ -78,7 +82,7 @@ class Search {
     ++best_.queries;
     const DistanceResult r = distance(part_, elements_.origin(), at, tracking_.features, options);
     if (!(r.lower > 0.0))
-      best_.overlap_work += options.depth && part_.is_curved() ? kCostOfCurved : 1;
+      best_.overlap_work += options.depth && is_ellipsoid(part_) ? kCostOfCurved : 1;
     keep_plane(r, [&] { return r.normal.dot(at.translation); });
     return r;
   }

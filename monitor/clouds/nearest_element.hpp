@@ -20,8 +20,9 @@ enum class CloudAnswer : std::uint8_t {
 // The work limit: a part that is deep in a cloud overlaps thousands of elements, and a query of the
 // core takes up to a hundred times as long in an overlap. As soon as an overlap is certified and
 // the queries in overlaps have cost this much, no further element is queried. The unit is a query
-// of a polyhedron and a point, some 0.7 us. A query of a curved part takes 80 us (kCostOfCurved). A
-// query of a polyhedron and a slab or cube takes 14 us (kCostOfBodies).
+// of a polyhedron or a truncated cone and a point, some 0.7 us. A query of an ellipsoid and a
+// point, or of a curved part and a slab or cube, takes 80 us (kCostOfCurved). A query of a
+// polyhedron and a slab or cube takes 14 us (kCostOfBodies).
 inline constexpr std::uint32_t kMostOverlapWork = 8192, kCostOfCurved = 128, kCostOfBodies = 32;
 
 // lower <= signed distance of the part and the nearest element <= upper, rounding included, as in

@@ -129,6 +129,40 @@ TEST(SegmentAndCone, IsAnsweredThatTouchesOrPenetrates) {
   }
 }
 
+// Oracles: no direction has a smaller depth, and the ball of that radius around the point is in the
+// cone, by what a cone is: heights, and a radius at each.
+TEST(SegmentAndCone, OfAPointInsideHasTheRadiusOfTheLargestBallAroundItAsItsDepth) {
+  Random random(12);
+  int answered = 0;
+  for (int i = 0; i < 300; ++i) {
+    const double low = random.chance(0.2) ? 0.0 : random.log_uniform(0.05, 1.0);
+    const double high = low > 0.0 && random.chance(0.3) ? low : random.log_uniform(0.05, 1.0);
+    const double half = random.log_uniform(0.05, 1.0);
+    const auto radius_at = [&](double z) { return low + (high - low) * (z + half) / (2.0 * half); };
+    const double z = random.uniform(-half, half), angle = random.uniform(0.0, 6.28);
+    const double across = radius_at(z) * random.uniform(0.0, 1.0);
+    const Vec3 p(across * std::cos(angle), across * std::sin(angle), z);
+    const CurvedCase c{cone_of(low, high, half), sphere_of(0.0, p), at(0, 0, 0), at(0, 0, 0)};
+    (void)expect_no_faults(c, std::to_string(i));
+    TrackingState state;
+    const DistanceResult r = answer(c, state);
+    if (r.upper >= -1e-9) continue;
+    answered += r.iterations == 1;
+    EXPECT_LE(r.upper - r.lower, 1e-13) << i;
+    for (int k = 0; k < 300; ++k) {
+      const Vec3 n = random.direction();
+      const double side = std::hypot(n.x(), n.y());
+      const double support = std::max(-half * n.z() + low * side, half * n.z() + high * side);
+      ASSERT_GE(support - n.dot(p), -r.upper - 1e-14) << i;
+      const Vec3 q = p - r.upper * n;
+      ASSERT_LE(std::abs(q.z()), half + 1e-14) << i;
+      ASSERT_LE(std::hypot(q.x(), q.y()), radius_at(q.z()) + 1e-14) << i;
+    }
+    EXPECT_NEAR(r.normal.dot(r.point_on_b - r.point_on_a), r.distance, 1e-14) << i;
+  }
+  EXPECT_GE(answered, 280);
+}
+
 TEST(SegmentAndCone, IsAnsweredAlongASideWithinATilt) {
   const oracle::CurvedBody cylinder = cone_of(0.5, 0.5, 1.0);
   const oracle::CurvedBody capsule = capsule_of({0, 0, -2}, {0, 0, 0.5}, 0.125);

@@ -1,4 +1,4 @@
-// Parts that are deep in what a sensor sees. Oracle: the closed forms of boxes and cylinders in
+// Parts that are deep in what a sensor sees. Oracle: the closed forms of boxes and balls in
 // long double, over every single point.
 #include "monitor/pairs/cloud_pairs.hpp"
 
@@ -18,17 +18,19 @@ namespace {
 
 constexpr std::uint32_t kSeen = 2;  // objects: two arms, seen
 const Vec3 kHalf(0.05, 0.04, 0.1);  // of boxes, m
-constexpr double kRadius = 0.05, kHalfLength = 0.1;
+constexpr double kRadius = 0.05;
 
-// Two arms of two boxes and two cylinders, and a sensor that sees points within 2 m.
+// Two arms of two boxes and two ellipsoids with equal axes, and a sensor that sees points within 2
+// m.
 Scene arms_and_sensor() {
   std::vector<Object> objects;
   for (const char* const name : {"left", "right"}) {
     std::vector<Part> parts;
     for (int i = 0; i < 4; ++i) {
       const Pose at = test::at(0.06 * i, 0.0, 0.02 * i);
-      parts.push_back(i % 2 == 0 ? test::block(kHalf, at)
-                                 : Part{"round", test::made(cylinder(kRadius, kHalfLength)), at});
+      parts.push_back(i % 2 == 0
+                          ? test::block(kHalf, at)
+                          : Part{"round", test::made(ellipsoid(Vec3::Constant(kRadius))), at});
     }
     objects.push_back(test::moving(name, std::move(parts)));
   }
@@ -42,7 +44,7 @@ Scene arms_and_sensor() {
   return scene;
 }
 
-// Points that fill a cube of 0.8 m: some 250 of them are in each part.
+// Points that fill a cube of 0.8 m: 80 to 250 of them are in each part.
 std::vector<MeasuredPoint> dense_points(Random& random) {
   std::vector<MeasuredPoint> points(80'000);
   for (MeasuredPoint& point : points) {
@@ -63,12 +65,7 @@ long double to_box(const test::LongVec& p) {
   const test::LongVec out = p.cwiseAbs() - kHalf.cast<long double>();
   return out.cwiseMax(0.0L).norm() + std::min(out.maxCoeff(), 0.0L);
 }
-long double to_cylinder(const test::LongVec& p) {
-  const long double side = std::hypot(p.x(), p.y()) - static_cast<long double>(kRadius);
-  const long double end = std::abs(p.z()) - static_cast<long double>(kHalfLength);
-  return std::hypot(std::max(side, 0.0L), std::max(end, 0.0L)) +
-         std::min(std::max(side, end), 0.0L);
-}
+long double to_ball(const test::LongVec& p) { return p.norm() - kRadius; }
 // The signed distance of a part of an arm at this pose from all points, which are in the world.
 long double truth(const Part& part, const Pose& arm, const std::vector<MeasuredPoint>& points) {
   const Eigen::Quaternion<long double> turn = arm.orientation.cast<long double>().normalized();
@@ -80,7 +77,7 @@ long double truth(const Part& part, const Pose& arm, const std::vector<MeasuredP
   long double least = std::numeric_limits<long double>::infinity();
   for (const MeasuredPoint& p : points) {
     const test::LongVec at = to_part(p);
-    least = std::min(least, (part.name == "round" ? to_cylinder(at) : to_box(at)) - p.radius);
+    least = std::min(least, (part.name == "round" ? to_ball(at) : to_box(at)) - p.radius);
   }
   return least;
 }
@@ -150,7 +147,7 @@ TEST(CloudPairs, LeaveSomeOfTheWorkForEveryPart) {
   std::uint32_t last = 0;
   for (std::uint32_t i = 0; i < table.part_pairs(); ++i) last = clouds.has(i) ? i : last;
   PosedPart& touching = parts[table.part_a(last)];
-  place_at(test::at(0.775, 0.0, -0.06), touching);  // the cylinder's axis is at x = 0.955
+  place_at(test::at(0.775, 0.0, -0.06), touching);  // the ellipsoid's centre is at x = 0.955
   clouds.begin_tick();
   CloudPairs::Answer found;
   for (std::uint32_t i = 0; i < table.part_pairs(); ++i) {
