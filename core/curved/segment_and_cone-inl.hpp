@@ -96,6 +96,14 @@ struct ConePoint {
     on_cone = vec4(part * x, part * y, closest.height, 0.0);
     outward = vec4(scale * x, scale * y, normal.height, 0.0);
   }
+  // How far the point is beyond the cone along the normal, m.
+  HWY_INLINE double along_normal(const std::array<Disc, 2>& discs) const {
+    const Section& n = section.normal;
+    const auto support = [&](const Disc& disc) HWY_ATTR {
+      return dot(n, {disc.radius, disc.height});
+    };
+    return dot(n, p) - std::max(support(discs[0]), support(discs[1]));
+  }
   static HWY_INLINE double across_axis(Vec4 v) {
     return std::sqrt(lane(v, 0) * lane(v, 0) + lane(v, 1) * lane(v, 1));
   }
@@ -156,24 +164,18 @@ HWY_INLINE bool segment_and_cone_distance(const ConvexBody& a, const ConvexBody&
     local = start + s * direction;
   }
   const auto& [closest, normal] = nearest.section;
-  const auto along_normal = [&]() HWY_ATTR {
-    const auto support = [&](const Disc& disc) HWY_ATTR {
-      return dot(normal, {disc.radius, disc.height});
-    };
-    return dot(normal, nearest.p) - std::max(support(discs[0]), support(discs[1]));
-  };
   const Section gap{nearest.p.across - closest.across, nearest.p.height - closest.height};
   const double offset = a_from_b.translation_length;
   const double size = size_of(a, b, offset);
   CurvedConclusion found;
-  found.lower = along_normal() - behind;
+  found.lower = nearest.along_normal(discs) - behind;
   found.upper = std::sqrt(dot(gap, gap));
   const bool known =
       found.lower > 0.0 && normal.across >= 0.0 && found.upper - found.lower <= 0x1p-50 * size;
   const bool may_be_inside = !known && is_point(segment) && nearest.p.across > kBesideAxis;
   if (HWY_UNLIKELY(may_be_inside)) {
     nearest = ConePoint(discs, placed, true);
-    found.lower = found.upper = along_normal();
+    found.lower = found.upper = nearest.along_normal(discs);
   }
   found.error =
       rounding_error({&a, a.bounding_radius}, {&b, b.bounding_radius}, place_of(a_from_b),

@@ -24,10 +24,6 @@ constexpr double kSpareToRemove = 2e-3;
 // Planes towards more children of a group than this cost more queries than they save.
 constexpr int kAsksOfAGroup = 2;
 
-bool is_ellipsoid(const ConvexBody& part) noexcept {
-  return part.curved.kind == CurvedShape::Kind::kEllipsoid;
-}
-
 template <class Elements>
 class Search {
  public:
@@ -81,8 +77,8 @@ class Search {
     at.translation_error = moved_;
     ++best_.queries;
     const DistanceResult r = distance(part_, elements_.origin(), at, tracking_.features, options);
-    if (!(r.lower > 0.0))
-      best_.overlap_work += options.depth && is_ellipsoid(part_) ? kCostOfCurved : 1;
+    const bool is_ellipsoid = part_.curved.kind == CurvedShape::Kind::kEllipsoid;
+    if (!(r.lower > 0.0)) best_.overlap_work += options.depth && is_ellipsoid ? kCostOfCurved : 1;
     keep_plane(r, [&] { return r.normal.dot(at.translation); });
     return r;
   }

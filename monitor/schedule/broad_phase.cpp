@@ -161,8 +161,8 @@ double BroadPhase::waiting_lower() const noexcept {
   return overdue_ ? overdue_lower_ : kInfinity;
 }
 
-// max(H, Z + U), m: at this distance or farther, a pair is neither the minimum nor in a zone. Z + U
-// also counts the displacement since the last tick. Both H and Z + U are raised by the margin that
+// max(H, Z) + U, m: at this distance or farther, a pair is neither the minimum nor in a zone. U
+// also counts the displacement since the last tick. Both H and Z are raised by the margin that
 // makes the pair active well before it is urgent.
 double BroadPhase::level_of(std::uint32_t pair) const noexcept {
   const auto [a, b] = ends(pair);
@@ -170,7 +170,7 @@ double BroadPhase::level_of(std::uint32_t pair) const noexcept {
   const double since = displacement_since_last_tick(*bodies_[a].state) +
                        displacement_since_last_tick(*bodies_[b].state);
   const double zones = zone_levels_.largest_threshold(pair) + urgent;
-  return std::max(std::max(horizon_, urgent), zones + since) + kSumError;
+  return std::max(std::max(horizon_, urgent), zones) + since + kSumError;
 }
 
 bool BroadPhase::is_far(std::uint32_t pair, double lower) const noexcept {
@@ -182,10 +182,10 @@ bool BroadPhase::cull(std::uint32_t pair, double lower) noexcept {
   const auto [a, b] = ends(pair);
   const Body& body_a = bodies_[a];
   const Body& body_b = bodies_[b];
-  const double allowance = lower - level_of(pair);  // s, at most L - max(H, Z + U)
+  const double allowance = lower - level_of(pair);  // s, at most L - max(H, Z) - U
   const double usual = usual_displacement_[a] + usual_displacement_[b];
   if (!(allowance >= kLeastAllowance + kLeastTicks * usual)) return false;
-  CLEARANCE_INVARIANT(lower - allowance >= std::max(horizon_, zone_level(pair)));
+  CLEARANCE_INVARIANT(lower - allowance >= level(pair, horizon_));
   // A fixed object needs no part of the allowance.
   if (body_b.fixed) return wheels_.set(2 * pair, a, allowance);
   if (body_a.fixed) return wheels_.set(2 * pair + 1, b, allowance);
@@ -199,24 +199,23 @@ bool BroadPhase::cull(std::uint32_t pair, double lower) noexcept {
   return false;
 }
 
-// Z + U, m.
-double BroadPhase::zone_level(std::uint32_t pair) const noexcept {
-  return zone_levels_.largest_threshold(pair) + bodies_[ends(pair).a].state->may_have_moved +
-         bodies_[ends(pair).b].state->may_have_moved;
+// max(H, Z) + U, m.
+double BroadPhase::level(std::uint32_t pair, double horizon) const noexcept {
+  return std::max(horizon, zone_levels_.largest_threshold(pair)) +
+         bodies_[ends(pair).a].state->may_have_moved + bodies_[ends(pair).b].state->may_have_moved;
 }
 
 bool BroadPhase::is_culled(std::uint32_t pair) const noexcept {
   return wheels_.is_set(2 * pair) || wheels_.is_set(2 * pair + 1);
 }
 
-// D >= H and D - U >= Z; only D >= W while some pairs' timers are overdue.
+// D - U >= H and Z; only D >= W while some pairs' timers are overdue.
 bool BroadPhase::may_be_culled(std::uint32_t pair, double upper) const noexcept {
   if (!is_culled(pair)) return true;
   const TrackedObject& a = *bodies_[ends(pair).a].state;
   const TrackedObject& b = *bodies_[ends(pair).b].state;
   if (!a.known() || !b.known()) return true;
-  return overdue_ ? upper >= std::min(horizon_, overdue_lower_)
-                  : upper >= std::max(horizon_, zone_level(pair));
+  return overdue_ ? upper >= std::min(horizon_, overdue_lower_) : upper >= level(pair, horizon_);
 }
 
 void BroadPhase::check_some() noexcept {

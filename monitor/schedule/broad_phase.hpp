@@ -1,12 +1,12 @@
 // The broad phase decides which pairs a tick can provably leave alone. README.md here has the proof
 // and the reasons.
 //
-// A pair is culled while its lower bound L, less the displacement of its two objects since then, is
-// not below two levels. The first is the horizon H, which is no smaller than a certified minimum
-// over all pairs. The second is Z + U. Z is the level that the pair's zones watch for. U is the
-// unobserved motion of late objects, now and since the last tick. The pair has a timer on the
-// motion wheels of both objects, and the allowance s above those levels is divided between the two.
-// All other pairs are active: they are updated in every tick.
+// A pair is culled while its lower bound L, less the displacement of its two objects since then and
+// less U, is not below two levels. U is the unobserved motion of late objects, now and since the
+// last tick. The first level is the horizon H, which is no smaller than a certified minimum over
+// all pairs. The second is Z, the level that the pair's zones watch for. The pair has a timer on
+// the motion wheels of both objects, and the allowance s above those levels is divided between the
+// two. All other pairs are active: they are updated in every tick.
 #pragma once
 
 #include <cstdint>
@@ -123,7 +123,7 @@ class BroadPhase {
   void pair_arrivals(std::size_t most) noexcept;
   void take_due(std::span<const std::uint32_t> objects) noexcept;
   [[nodiscard]] double level_of(std::uint32_t pair) const noexcept;
-  [[nodiscard]] double zone_level(std::uint32_t pair) const noexcept;
+  [[nodiscard]] double level(std::uint32_t pair, double horizon) const noexcept;
   [[nodiscard]] bool is_culled(std::uint32_t pair) const noexcept;
   void activate(std::uint32_t pair) noexcept;
   [[nodiscard]] const Sphere& sphere_of(Body& body) noexcept;

@@ -2,7 +2,7 @@
 //
 // After the broad phase every known pair is one of three:
 //   updated: its bounds are of this tick (Culling::updated());
-//   culled:  D >= H, and D - U >= Z, also at every instant since the last tick (README.md here);
+//   culled:  D - U >= H and Z, also at every instant since the last tick (BROAD_PHASE.md);
 //   waiting: only D >= W, because one tick had more motion than time for all pairs.
 // D is the pair's distance for the poses in use, and H is the horizon. Z is the level that the
 // pair's zones watch for, and U is the unobserved motion of its objects. W is the bound of all
@@ -20,7 +20,7 @@ struct UntouchedPairs {
   bool any = false;                  // a pair is culled or waiting
   double horizon = -kInfinity;       // H, m
   double waiting_lower = kInfinity;  // W, m; infinity: no pair waits
-  // Both are the largest sum over any two objects, m. The first sums unobserved motion (U). The
+  // Both are the largest sum over any two objects, m. The first sums unobserved motion. The
   // second sums how far the objects were, at any instant since the last tick, from where they are
   // now.
   double most_unobserved = 0.0, most_displaced = 0.0;
@@ -28,9 +28,12 @@ struct UntouchedPairs {
   // Lower bounds of distances, for all places where the objects may be; margins are not subtracted.
   // This one is for the pairs that wait, which may be in zones.
   [[nodiscard]] Clearance waiting() const noexcept { return less_motion(waiting_lower); }
-  // This one is for all culled and waiting pairs.
+  // This one is for all culled and waiting pairs. The horizon holds for each pair with its own
+  // unobserved motion: one object that is late, as each camera is, makes no other pair's bound
+  // wide.
   [[nodiscard]] Clearance all() const noexcept {
-    return less_motion(std::min(horizon, waiting_lower));
+    const Clearance waits = waiting();
+    return {.now = std::min(horizon, waits.now), .since = std::min(horizon, waits.since)};
   }
 
  private:

@@ -51,5 +51,25 @@ TEST(BroadPhase, SaysSoWhenNotEveryPairHasBeenLookedAt) {
   EXPECT_GT(monitor.tick({}, kStart).lower_all, 0.0);
 }
 
+// A third object, which is far away, is not observed for up to 50 ms: it may have moved 0.1 m.
+TEST(BroadPhase, AnUnobservedObjectFarAwayMakesTheBoundOfAllPairsNoWider) {
+  std::vector<Object> objects;
+  for (int i = 0; i < 3; ++i) objects.push_back(test::moving("ball", {test::ball(0.1)}));
+  objects[2].max_speed = 2.0;
+  const Scene scene = test::cell_of(std::move(objects));
+  Monitor monitor(scene);
+  (void)monitor.tick(std::vector{test::sample(2, test::at(9, 0, 0), kStart)}, kStart);
+  for (int t = 1; t <= 50; ++t) {
+    const std::int64_t now = kStart + t * kTick;
+    const std::vector near{test::sample(0, test::at(0, 0, 0), now),
+                           test::sample(1, test::at(0.21, 0, 0), now)};
+    const Report& report = monitor.tick(near, now);
+    if (t == 1) continue;  // how the two came there is not known
+    EXPECT_EQ(report.stale, t > 20 ? 2u : 0u) << t;
+    EXPECT_NEAR(report.lower_all, 0.01, 1e-9) << t;
+    EXPECT_NEAR(report.swept_lower_all, 0.01, 1e-9) << t;
+  }
+}
+
 }  // namespace
 }  // namespace clearance

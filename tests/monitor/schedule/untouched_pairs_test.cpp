@@ -10,13 +10,23 @@
 namespace clearance {
 namespace {
 
-TEST(UntouchedPairs, AreNoNearerThanTheHorizonLessTheUnobservedMotion) {
+TEST(UntouchedPairs, AreNoNearerThanTheHorizonWhateverIsNotObservedOfOthers) {
   const UntouchedPairs untouched{
       .any = true, .horizon = 0.5, .most_unobserved = 0.1, .most_displaced = 0.2};
-  EXPECT_NEAR(untouched.all().now, 0.4, 1e-12);
-  EXPECT_LE(untouched.all().now, 0.4);
-  EXPECT_NEAR(untouched.all().since, 0.3, 1e-12);
+  EXPECT_EQ(untouched.all().now, 0.5);
+  EXPECT_EQ(untouched.all().since, 0.5);
   EXPECT_EQ(untouched.waiting().now, kInfinity) << "no pair waits";
+}
+
+TEST(UntouchedPairs, ThatWaitAreNoNearerThanTheirBoundLessTheUnobservedMotionOfAnyTwo) {
+  const UntouchedPairs untouched{.any = true,
+                                 .horizon = 0.5,
+                                 .waiting_lower = 0.45,
+                                 .most_unobserved = 0.1,
+                                 .most_displaced = 0.2};
+  EXPECT_NEAR(untouched.all().now, 0.35, 1e-12);
+  EXPECT_LE(untouched.all().now, 0.35);
+  EXPECT_NEAR(untouched.all().since, 0.25, 1e-12);
 }
 
 TEST(UntouchedPairs, ThatWaitBoundAllOfThem) {
