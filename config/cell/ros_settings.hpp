@@ -14,7 +14,7 @@ namespace clearance {
 
 // Topics by their names in ROS 2, "/diagnostics"; an empty one is not written.
 struct RosOutputs {
-  std::string markers, diagnostics, minimum_distance, speed_scaling, monitored_planning_scene;
+  std::string markers, diagnostics, minimum_distance, speed_scaling, monitored_planning_scene, log;
   std::string messages;  // not a topic, but the namespace of those in kRosMessages
 };
 
@@ -24,13 +24,14 @@ struct RosOutput {
   std::string RosOutputs::*topic;
   std::string_view standard_topic;
 };
-inline constexpr std::array<RosOutput, 6> kRosOutputs = {{
+inline constexpr std::array<RosOutput, 7> kRosOutputs = {{
     {"markers", &RosOutputs::markers, "/clearance/markers"},
     {"diagnostics", &RosOutputs::diagnostics, "/diagnostics"},
     {"minimum_distance", &RosOutputs::minimum_distance, "/clearance/minimum_distance"},
     {"speed_scaling", &RosOutputs::speed_scaling, "/clearance/speed_scaling"},
     {"monitored_planning_scene", &RosOutputs::monitored_planning_scene,
      "/clearance/monitored_planning_scene"},
+    {"log", &RosOutputs::log, "/rosout"},
     {"messages", &RosOutputs::messages, "/clearance"},
 }};
 

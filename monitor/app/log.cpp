@@ -19,7 +19,10 @@
 #include <atomic>
 #include <cerrno>
 #include <cstdio>
+#include <deque>
+#include <iterator>
 #include <memory>
+#include <mutex>
 #include <string_view>
 #include <thread>
 #include <utility>
@@ -164,12 +167,37 @@ class QueueSink final : public Sink {
 constexpr spdlog::level::level_enum kLevels[] = {spdlog::level::info, spdlog::level::warn,
                                                  spdlog::level::err};
 
+// Lines for kept_lines().
+struct KeptLines {
+  std::mutex mutex;
+  std::size_t most = 0;
+  std::string name = "clearance";
+  std::deque<LoggedLine> lines;
+};
+KeptLines& kept() {
+  static KeptLines lines;
+  return lines;
+}
+
+void keep(LogLevel level, const std::string& line) {
+  const std::lock_guard lock(kept().mutex);
+  if (kept().most == 0) return;
+  const auto since = std::chrono::system_clock::now().time_since_epoch();
+  if (kept().lines.size() >= kept().most) kept().lines.pop_front();
+  kept().lines.push_back(
+      {std::chrono::duration_cast<std::chrono::nanoseconds>(since).count(), level, line});
+}
+
 // The program's log, from start_log() on.
 std::weak_ptr<QueueSink> the_log;
 
 }  // namespace
 
 void start_log(const std::string& name, const std::string& level) {
+  {
+    const std::lock_guard lock(kept().mutex);
+    kept().name = name;
+  }
   auto sink = std::make_shared<QueueSink>(name);
   the_log = sink;
   auto logger = std::make_shared<spdlog::logger>(name, std::move(sink));
@@ -183,6 +211,25 @@ bool is_logged(LogLevel level) { return spdlog::should_log(kLevels[static_cast<i
 void log_text(LogLevel level, std::string_view text, std::string_view code) {
   const std::string line = code.empty() ? std::string(text) : fmt::format("{} [{}]", text, code);
   spdlog::default_logger_raw()->log(kLevels[static_cast<int>(level)], std::string_view(line));
+  keep(level, line);
+}
+
+void keep_lines(std::size_t most) {
+  const std::lock_guard lock(kept().mutex);
+  kept().most = most;
+}
+
+std::string log_name() {
+  const std::lock_guard lock(kept().mutex);
+  return kept().name;
+}
+
+std::vector<LoggedLine> kept_lines() {
+  const std::lock_guard lock(kept().mutex);
+  std::vector<LoggedLine> lines(std::make_move_iterator(kept().lines.begin()),
+                                std::make_move_iterator(kept().lines.end()));
+  kept().lines.clear();
+  return lines;
 }
 
 void drain_log() {

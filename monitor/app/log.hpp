@@ -3,7 +3,12 @@
 #pragma once
 
 #include <chrono>
+#include <cstddef>
+#include <cstdint>
 #include <string>
+#include <vector>
+
+#include "monitor/interface/log_line.hpp"
 
 namespace clearance {
 
@@ -20,5 +25,18 @@ inline constexpr std::chrono::milliseconds kLogPatience{200};
 // Waits until the lines logged so far are written, at most kLogPatience. Messages and summaries,
 // which do not pass through the queue, call it first.
 void drain_log();
+
+struct LoggedLine {
+  std::int64_t time_ns = 0;  // since 1970
+  LogLevel level = LogLevel::kInfo;
+  std::string text;  // with its code
+};
+
+// Keeps the newest `most` lines from now on, for whoever passes them on. Any thread.
+void keep_lines(std::size_t most);
+// The lines that were kept since the last call, oldest first.
+[[nodiscard]] std::vector<LoggedLine> kept_lines();
+// The name that start_log() got; before that, "clearance".
+[[nodiscard]] std::string log_name();
 
 }  // namespace clearance

@@ -19,7 +19,7 @@ Option ros_outputs_option(std::vector<std::string>& asked, std::vector<std::stri
   return {"--ros2",
           &asked,
           "Write this ROS 2 output too, on its standard topic: markers, diagnostics, "
-          "minimum_distance, speed_scaling, monitored_planning_scene, messages, or all; "
+          "minimum_distance, speed_scaling, monitored_planning_scene, log, messages, or all; "
           "repeatable",
           Check{one_word_of(keys).fault},
           {.excludes = std::move(excludes)}};

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <utility>
 
+#include "monitor/app/log.hpp"
 #include "monitor/app/log_line.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/visual/cell_markers.hpp"
@@ -14,6 +15,9 @@ namespace {
 
 // Slots for reports and numbers: the thread waits for a full send buffer now and then.
 constexpr std::size_t kReports = 2, kNumbers = 64;
+// Lines of the log that may wait for a second.
+constexpr std::size_t kLines = 256;
+constexpr std::int64_t kSecondNs = 1'000'000'000;
 // A viewer that has dropped its markers gets the bodies again.
 constexpr std::int64_t kBodiesAgainNs = 10'000'000'000;
 // Diagnostics need the last report before each second's end.
@@ -44,6 +48,12 @@ double speed_scaling(const Report& report) noexcept {
   return std::ranges::any_of(report.zones, &ZoneReport::active) ? 0.0 : 1.0;
 }
 
+// Levels of rcl_interfaces/msg/Log.
+std::uint8_t ros_level(LogLevel level) noexcept {
+  constexpr std::uint8_t kInfo = 20, kWarn = 30, kError = 40;
+  return level == LogLevel::kInfo ? kInfo : level == LogLevel::kWarn ? kWarn : kError;
+}
+
 }  // namespace
 
 bool writes_ros(const Cell& cell) noexcept {
@@ -63,6 +73,7 @@ RosWriter::RosWriter(const Cell& cell, Participant& participant, MakeHealth make
       speed_scaling_(make_speed_scaling_writer(participant, cell)),
       planning_scene_(
           make_writer(participant, kRosMonitoredScene, cell.ros.outputs.monitored_planning_scene)),
+      log_(make_writer(participant, kRosLog, cell.ros.outputs.log)),
       queue_(cell.scene, {.reports = kReports}),
       numbers_(kNumbers),
       period_ns_(std::llround(1e9 / (markers_ != 0 ? cell.ros.markers_hz : kDiagnosticReportsHz))),
@@ -71,6 +82,7 @@ RosWriter::RosWriter(const Cell& cell, Participant& participant, MakeHealth make
       writes_(std::move(leads)) {
   if (planning_scene_ != 0) unwritten_scene_ = to_wire(monitored_scene(cell));
   scene_waits_ = planning_scene_ != 0;
+  if (log_ != 0) keep_lines(kLines);
   thread_ = std::thread([this] { run(); });
 }
 
@@ -78,7 +90,7 @@ RosWriter::RosWriter(const Cell& cell, Participant& participant, MakeHealth make
 RosWriter::~RosWriter() {
   finish();
   for (const dds_entity_t writer :
-       {markers_, diagnostics_, minimum_distance_, speed_scaling_, planning_scene_}) {
+       {markers_, diagnostics_, minimum_distance_, speed_scaling_, planning_scene_, log_}) {
     if (writer != 0) dds_delete(writer);
   }
 }
@@ -105,7 +117,7 @@ void RosWriter::report(const Report& report, std::span<const SourceUse> sources)
 }
 
 void RosWriter::statistics(const LoopStatistics& statistics) noexcept {
-  if (diagnostics_ != 0) queue_.statistics(statistics);
+  if (diagnostics_ != 0 || log_ != 0) queue_.statistics(statistics);
 }
 
 void RosWriter::run() {
@@ -114,6 +126,7 @@ void RosWriter::run() {
   if (const Refusal refusal = use_fifo_scheduling(0)) log_line(lines::kSystemRefuses, *refusal);
   for (;;) {
     queue_.wait();
+    write_log();
     if (stop_) return;
     write_numbers();
     while (const QueuedReport* queued = queue_.reports().front()) {
@@ -164,7 +177,24 @@ void RosWriter::write_markers(const QueuedReport& queued) {
   writes_.write(markers_, &*closest_message(scene_, *distances_, stamp_ns, settings_.world()));
 }
 
+// Each of two partners has a log of its own.
+void RosWriter::write_log() {
+  if (log_ == 0) return;
+  for (const LoggedLine& line : kept_lines()) {
+    rcl_interfaces_msg_dds__Log_ message{};
+    message.stamp = {.sec = static_cast<std::int32_t>(line.time_ns / kSecondNs),
+                     .nanosec = static_cast<std::uint32_t>(line.time_ns % kSecondNs)};
+    message.level = ros_level(line.level);
+    std::string name = log_name(), none, text = line.text;
+    message.name = name.data();
+    message.msg = text.data();
+    message.file = message.function = none.data();
+    writes_.write(log_, &message);
+  }
+}
+
 void RosWriter::write_diagnostics(const LoopStatistics& statistics) {
+  if (diagnostics_ == 0) return;
   const auto health = make_health_(statistics);
   if (!health) return;
   const std::int64_t stamp_ns = (**health).now_ns + (**health).clock_offset_ns;

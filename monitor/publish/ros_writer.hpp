@@ -63,12 +63,13 @@ class RosWriter final : public ReportSink {
   void write_numbers();
   void write_markers(const QueuedReport& queued);
   void write_diagnostics(const LoopStatistics& statistics);
+  void write_log();
 
   const Scene& scene_;
   const RosSettings& settings_;
   const MakeHealth make_health_;
-  dds_entity_t markers_, diagnostics_, minimum_distance_, speed_scaling_,
-      planning_scene_;  // 0: not asked for
+  dds_entity_t markers_, diagnostics_, minimum_distance_, speed_scaling_, planning_scene_,
+      log_;  // 0: not asked for
   ReportQueue queue_;
   SpscRing<Numbers> numbers_;
   std::int64_t period_ns_,

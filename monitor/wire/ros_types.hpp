@@ -58,6 +58,12 @@ topic_descriptor<hri_msgs_msg_dds__IdsList_>() noexcept {
   return hri_msgs_msg_dds__IdsList__desc;
 }
 
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<rcl_interfaces_msg_dds__Log_>() noexcept {
+  return rcl_interfaces_msg_dds__Log__desc;
+}
+
 // The delivery of a ROS 2 topic, and what its endpoints say of its type in their USER_DATA (since
 // Iron: type description hashes, REP-2011).
 struct RosType {
@@ -104,6 +110,11 @@ inline constexpr RosType kRosBool{
 inline constexpr RosType kRosIdsList{
     &hri_msgs_msg_dds__IdsList__desc,
     "typehash=RIHS01_7e0812d1ac945c98fd3e393568d581ad0ab567f37b24eff633eab778c1bfe62d;", false, 16};
+
+inline constexpr RosType kRosLog{
+    &rcl_interfaces_msg_dds__Log__desc,
+    "typehash=RIHS01_e28ce254ca8abc06abf92773b74602cdbf116ed34fbaf294fb9f81da9f318eac;", true,
+    1000};
 
 // The name of a ROS 2 topic in DDS: "rt/joint_states" is /joint_states.
 [[nodiscard]] inline std::string ros_dds_name(const std::string& topic) { return "rt" + topic; }

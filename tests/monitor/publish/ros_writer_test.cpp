@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <ctime>
 #include <map>
 
+#include "monitor/app/log.hpp"
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/publish/health.hpp"
 #include "monitor/tick/monitor.hpp"
@@ -119,6 +121,22 @@ TEST_F(RosWriterTest, TheScalingIsTheLeastOfAllStops) {
   EXPECT_TRUE(comes(0.75, 0.25));
   EXPECT_TRUE(comes(0.5, 1.0));
   EXPECT_TRUE(comes(0.0, 1.0));
+}
+
+TEST_F(RosWriterTest, LinesOfTheLogAreThereForALateReaderWithTheirCodesAndLevels) {
+  (void)kept_lines();
+  log_line(lines::kStopped, "a test");
+  log_line(lines::kSystemRefuses, "a request of a test");
+  tell_statistics(0);
+  RosReader<rcl_interfaces_msg_dds__Log_> lines(client, kRosLog, "rt/told/rosout");
+  ASSERT_TRUE(eventually([&] { return lines.take(); }));
+  EXPECT_STREQ(lines.last().msg, "stopped after a test [stopped]");
+  EXPECT_EQ(lines.last().name, log_name());
+  EXPECT_EQ(lines.last().level, 20);
+  EXPECT_NEAR(lines.last().stamp.sec, static_cast<double>(std::time(nullptr)), 60.0);
+  ASSERT_TRUE(eventually([&] { return lines.take(); }));
+  EXPECT_STREQ(lines.last().msg, "a request of a test [system-refuses]");
+  EXPECT_EQ(lines.last().level, 30);
 }
 
 TEST_F(RosWriterTest, TheSceneIsThereForALateReader) {
