@@ -3,9 +3,11 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -132,8 +134,16 @@ void StoppingReader::read_conditions(MapReader& map) {
     }
   }
   conditions_.category = stops.category;
-  if (const YamlNode* stated = map.optional("stated_on"))
+  if (const YamlNode* stated = map.optional("stated_on")) {
     stops.stated_on = read_ros_topic(*stated, "/arm/stopping", diagnostics_);
+    const std::array known{std::string_view(robot_.joint_states), std::string_view("/joint_states"),
+                           std::string_view("/tf"), std::string_view("/tf_static")};
+    if (!stops.stated_on.empty() && std::ranges::find(known, stops.stated_on) != known.end()) {
+      diagnostics_.add(*stated, fmt::format("found '{}', whose messages are no std_msgs/Bool; "
+                                            "expected a topic of its own, as /arm/stopping",
+                                            stops.stated_on));
+    }
+  }
   const auto is_map = [](const YamlNode* node) {
     return node != nullptr && node->kind == YamlNode::Kind::kMap;
   };

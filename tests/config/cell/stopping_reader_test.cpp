@@ -64,6 +64,8 @@ TEST_F(Stopping, InProgressIsStatedOnATopicOfRos2) {
   const RobotStops stops =
       scene(cell("{reaction_ms: 0, time_ms: 300, stated_on: /arm/stopping}")).robots[0].stopping;
   EXPECT_EQ(stops.stated_on, "/arm/stopping");
+  EXPECT_THAT(errors(cell("{reaction_ms: 0, time_ms: 300, stated_on: /joint_states}")),
+              testing::HasSubstr("'/joint_states', whose messages are no std_msgs/Bool"));
   EXPECT_THAT(errors(cell("{reaction_ms: 0, time_ms: 300, stated_on: arm/stopping}")),
               mistake_at("cell.yaml:5", "'arm/stopping'", "topic of ROS 2 with its namespace"));
 }
