@@ -118,13 +118,14 @@ std::string own_settings() {
 }
 
 // True if those settings choose the cards: Cyclone adds up the cards of all settings, and refuses
-// one that is named twice.
+// one that is named twice. A comma ends the name of a file, and more settings may follow it.
 bool choose_cards(const std::string& settings) {
   constexpr std::string_view kFile = "file://";
   std::string text = settings;
-  if (settings.starts_with(kFile)) {
-    std::ifstream file(settings.substr(kFile.size()));
-    text.assign(std::istreambuf_iterator<char>(file), {});
+  for (std::size_t at = 0; (at = settings.find(kFile, at)) != std::string::npos;) {
+    at += kFile.size();
+    std::ifstream file(settings.substr(at, settings.find(',', at) - at));
+    text.append(std::istreambuf_iterator<char>(file), {});
   }
   return text.find("NetworkInterface") != std::string::npos;
 }

@@ -78,6 +78,28 @@ Qos ros_qos(const RosType& type, bool reliable, std::int32_t depth) {
   return qos;
 }
 
+// Cyclone states DDS Security's settings only in its built-in topic of participants, which has this
+// one from its creation on.
+bool is_secured(dds_entity_t participant) {
+  const dds_entity_t reader =
+      check_dds(dds_create_reader(participant, DDS_BUILTIN_TOPIC_DCPSPARTICIPANT, nullptr, nullptr),
+                "listing participants");
+  dds_instance_handle_t own = 0;
+  dds_get_instance_handle(participant, &own);
+  void* sample = nullptr;
+  dds_sample_info_t info{};
+  bool secured = false;
+  if (dds_read_instance(reader, &sample, &info, 1, 1, own) == 1) {
+    char* governance = nullptr;
+    secured = dds_qget_prop(static_cast<const dds_builtintopic_participant_t*>(sample)->qos,
+                            "dds.sec.access.governance", &governance);
+    dds_free(governance);
+    dds_return_loan(reader, &sample, 1);
+  }
+  dds_delete(reader);
+  return secured;
+}
+
 // A process can configure a domain once: its participants share the domain, with the options of the
 // first one.
 std::shared_ptr<const dds_entity_t> open_domain(const DdsOptions& options, std::uint32_t id) {
@@ -181,6 +203,7 @@ Participant::Participant(dds_entity_t participant, const std::string& partition)
 
 void Participant::make_publisher_and_subscriber(const std::string& partition) {
   partition_ = partition;
+  if (is_secured(participant_)) where_ += ", with DDS Security";
   check_dds(dds_get_domainid(participant_, &domain_id_), "asking for the domain");
   const Qos qos = partition_qos(partition);
   publisher_ =

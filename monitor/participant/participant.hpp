@@ -85,7 +85,7 @@ class Participant {
   [[nodiscard]] const std::string& partition() const noexcept { return partition_; }
   // A number of this domain, this partition and a topic, as the messages of a tick state it.
   [[nodiscard]] std::uint64_t address(const std::string& topic) const noexcept;
-  // "domain 7, partition demo, interface lo, datagrams of up to 65000 B"
+  // "domain 7, partition demo, interface lo, datagrams of up to 65000 B, with DDS Security"
   [[nodiscard]] const std::string& where() const noexcept { return where_; }
   // Says how to start another program on the same network: the CYCLONEDDS_URI to copy.
   [[nodiscard]] const std::string& how_to_reach() const noexcept { return how_to_reach_; }

@@ -55,7 +55,7 @@ debian_package(development libclearance-dev libdevel "certified distances of con
 debian_package(python python3-clearance python "certified distances in robot cells, from Python"
                "${about}\n.\nThis package has the Python module: distances of bodies and of cells,\nreplay of recordings, and the client of the daemon.")
 set(CPACK_DEBIAN_PROGRAMS_PACKAGE_RECOMMENDS "clearance-view")
-set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS "gnuplot-nox, python3, rt-tests, stress-ng")
+set(CPACK_DEBIAN_PROGRAMS_PACKAGE_SUGGESTS "gnuplot-nox, openssl, python3, rt-tests, stress-ng")
 set(CPACK_DEBIAN_VIEW_PACKAGE_RECOMMENDS "clearance")
 set(CPACK_DEBIAN_VIEW_PACKAGE_SUGGESTS "chromium")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF) # static libraries

@@ -13,6 +13,7 @@
 
 #include "monitor/participant/domain_configuration.hpp"
 #include "tests/shared/loopback.hpp"
+#include "tests/shared/scratch_folder.hpp"
 
 namespace clearance {
 namespace {
@@ -42,6 +43,25 @@ TEST(Participant, LeavesTheLastWordToCyclonesOwnVariable) {
   ::unsetenv("CYCLONEDDS_URI");
   EXPECT_GT(xml.find("9000B"), xml.find("1400B"));
   EXPECT_LT(xml.find("9000B"), xml.size());
+}
+
+// Cyclone refuses a card that the person's settings and ours both name.
+TEST(Participant, NamesNoCardIfOneOfSeveralFilesDoes) {
+  const test::ScratchFolder folder;
+  test::write_text(folder / "cards.xml",
+                   "<Interfaces><NetworkInterface name=\"eth1\"/></Interfaces>");
+  test::write_text(folder / "other.xml", "<Tracing/>");
+  const auto names = [&](const std::string& first, const std::string& second) {
+    const std::string files =
+        "file://" + (folder / first).string() + ",file://" + (folder / second).string();
+    ::setenv("CYCLONEDDS_URI", files.c_str(), 1);
+    const std::string xml = domain_configuration({.interface = "eth0"});
+    ::unsetenv("CYCLONEDDS_URI");
+    return xml.find("NetworkInterface") != std::string::npos;
+  };
+  EXPECT_TRUE(names("other.xml", "other.xml"));
+  EXPECT_FALSE(names("cards.xml", "other.xml"));
+  EXPECT_FALSE(names("other.xml", "cards.xml"));
 }
 
 class RosDomain : public testing::Test {
