@@ -217,6 +217,33 @@ TEST_F(Contacts, AnAbsentObjectHasNoContact) {
   EXPECT_EQ(tick(kTouching - 0.001).contacts[0].status, ContactStatus::kAllowed);
 }
 
+// The part is the pair's second object here.
+TEST_F(Contacts, APartThatComesSecondIsLateOrAbsentLikeOneThatComesFirst) {
+  Scene scene = test::cell_of({test::fixed("table", {test::ball(0.1)}, test::at(0, 0, 0)),
+                               test::moving("part", {test::ball(0.1)})});
+  scene.pairs[0].publish = true;
+  scene.zones.push_back(test::zone_over(scene, 0.05, 0.06));
+  scene.contacts.push_back(lift({0}));
+  const auto tick_part = [&](double x) -> const Report& {
+    const PoseSample part = test::sample(1, test::at(x, 0, 0), now += kTick);
+    return monitor->tick(std::span(&part, 1), now);
+  };
+  for (const bool has_ended : {false, true}) {
+    scene.contacts[0].end.distance = has_ended ? 0.01 : kInfinity;
+    begin(scene);
+    if (has_ended) tick_part(kTouching + 0.02);
+    tick_part(kTouching + 0.001);
+    EXPECT_EQ(tick_part(kTouching + 0.001).contacts[0].status,
+              has_ended ? ContactStatus::kEnded : ContactStatus::kAllowed);
+    now += 30'000'000;
+    const Report& late = tick_without_pose();
+    EXPECT_EQ(late.contacts[0].status, ContactStatus::kUnknown);
+    EXPECT_TRUE(late.zones[0].active);
+    ASSERT_TRUE(monitor->set_absent(1, true));
+    EXPECT_EQ(tick_without_pose().contacts[0].status, ContactStatus::kAbsent);
+  }
+}
+
 // The tick in which the pair is far enough is the last of the allowance.
 TEST_F(Contacts, TheContactEndsAfterTheTickInWhichThePairIsCertifiedToBeFarEnough) {
   begin_with({.distance = 0.01});

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <vector>
 
 #include "monitor/zones/protective_distance.hpp"
 #include "tests/monitor/replay/report_bytes.hpp"
@@ -17,10 +19,10 @@ namespace {
 
 using test::Meeting, test::usual_terms, test::kHumanRadius, test::kRobotRadius;
 
-TEST(Separations, APersonWhoIsKnownNotToBeThereLimitsNothing) {
+void expect_no_limit_without(std::uint32_t absent) {
   Meeting cell;
   ASSERT_LT(cell.tick(0.4, 0.0, 1.0).scaling, 1.0);
-  ASSERT_TRUE(cell.monitor->set_absent(0, true));
+  ASSERT_TRUE(cell.monitor->set_absent(absent, true));
   const PairSeparation& pair = cell.tick(0.4, 0.0, 1.0);
   EXPECT_EQ(pair.validity, SeparationValidity::kAbsent);
   EXPECT_EQ(pair.scaling, 1.0);
@@ -32,10 +34,14 @@ TEST(Separations, APersonWhoIsKnownNotToBeThereLimitsNothing) {
   EXPECT_EQ(zone.scaling, 1.0);
   EXPECT_EQ(zone.remaining, kInfinity);
 
-  cell.monitor->set_absent(0, false);
+  cell.monitor->set_absent(absent, false);
   EXPECT_EQ(cell.wait(test::kTick).validity, SeparationValidity::kUnknown) << "until the next pose";
   EXPECT_EQ(cell.report->separated_zones[0].scaling, 0.0);
   EXPECT_EQ(cell.tick(0.4, 0.0, 1.0).validity, SeparationValidity::kMeasured);
+}
+
+TEST(Separations, APersonOrARobotThatIsKnownNotToBeThereLimitsNothing) {
+  for (const std::uint32_t absent : {0U, 1U}) expect_no_limit_without(absent);
 }
 
 TEST(Separation, OfARobotThatApproachesHasTheTermsOfTheStandard) {
@@ -252,6 +258,75 @@ TEST(Separation, OfAnUnknownSpeedHasTheOneThatTheZoneStatesOrIsUnknown) {
     }
     EXPECT_EQ(report.separated_pairs[0].validity, SeparationValidity::kAssumed);
     EXPECT_EQ(report.separated_pairs[0].robot_speed, stated);
+  }
+}
+
+// The person's first pose has no twist, and is on time.
+TEST(Separation, OfAMeasuredPersonWhoseSpeedIsNotKnownYetHasTheStatedOneAndSaysSo) {
+  Separation terms = usual_terms();
+  terms.human_speed_is_measured = true;
+  Meeting meeting(terms);
+  meeting.begin();
+  PoseSample robot = test::sample(1, test::at(0, 0, 0), meeting.now);
+  robot.has_twist = true;
+  const PoseSample both[] = {test::sample(0, test::at(2, 0, 0), meeting.now), robot};
+  const PairSeparation& pair = meeting.monitor->tick(both, meeting.now).separated_pairs[0];
+  EXPECT_EQ(pair.validity, SeparationValidity::kAssumed);
+  EXPECT_EQ(pair.human_speed, 1.6);
+  EXPECT_EQ(pair.robot_speed, 0.0);
+}
+
+// No query says in which direction the person is, so a speed in any direction may lead there.
+TEST(Separation, OfAPairThatIsNotEvaluatedCountsSpeedsInAllDirections) {
+  Meeting known, unknown;
+  unknown.scene.budget = 0;
+  for (const double speed : {-0.5, 0.5}) {
+    EXPECT_NEAR(known.tick(2.0, 0.0, speed).robot_speed, std::max(speed, 0.0), 1e-12);
+    EXPECT_NEAR(unknown.tick(2.0, 0.0, speed).robot_speed, 0.5, 1e-12);
+    EXPECT_LT(unknown.report->pairs[0].evaluated_cycle, unknown.monitor->cycle());
+  }
+  unknown.robot_turn = {3.0, 0, 0};
+  EXPECT_NEAR(unknown.tick(2.0, 0.0, 0.5).robot_speed, 0.5 + 3.0 * kRobotRadius, 1e-12);
+}
+
+TEST(Separation, IsUnknownWhereNoBoundOfTheDistanceIs) {
+  Separation terms = usual_terms();
+  terms.human_is_first = {1};
+  Scene scene = test::cell_of({test::moving("person", {test::floor()}),
+                               test::fixed("robot", {test::floor()}, test::at(0, 0, 0))});
+  scene.pairs[0].publish = true;
+  scene.zones.push_back(test::zone_over(scene, 0.3, 0.4));
+  scene.zones[0].separation = terms;
+  Monitor monitor(scene);
+  PoseSample person = test::sample(0, test::at(0, 0, 0), test::kStart);
+  person.has_twist = true;
+  const Report& report = monitor.tick({&person, 1}, test::kStart);
+  ASSERT_NE(report.pairs[0].status, PairStatus::kUnknown);
+  ASSERT_EQ(report.pairs[0].lower, -kInfinity);
+  expect_unknown(report);
+}
+
+// Both pairs allow any speed, so the one with less to spare stands for the zone.
+TEST(Separation, OfAZoneWhosePairsScaleAlikeIsThatOfTheLeastRemainder) {
+  for (const double first : {1.5, 3.0}) {
+    Scene scene = test::cell_of({test::moving("one", {test::ball(0.1)}),
+                                 test::moving("other", {test::ball(0.1)}),
+                                 test::moving("robot", {test::ball(0.1)})});
+    for (ObjectPair& pair : scene.pairs) pair.publish = true;
+    Zone zone{"people", "people", "robot", 0.1, 0.2, {1, 2}};
+    zone.separation = usual_terms();
+    zone.separation->human_is_first = {1, 1};
+    scene.zones = {zone};
+    Monitor monitor(scene);
+    std::vector<PoseSample> samples;
+    for (const double x : {first, 2.0, 0.0}) {
+      samples.push_back(test::sample(static_cast<std::uint32_t>(samples.size()), test::at(x, 0, 0),
+                                     test::kStart));
+      samples.back().has_twist = true;
+    }
+    const ZoneSeparation& found = monitor.tick(samples, test::kStart).separated_zones[0];
+    EXPECT_EQ(found.scaling, 1.0);
+    EXPECT_EQ(found.pair, first < 2.0 ? 1u : 2u);
   }
 }
 
