@@ -6,6 +6,8 @@
 
 #include <list>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "tests/monitor/tick/small_cells.hpp"
 #include "tests/monitor/zones/lift.hpp"
@@ -217,30 +219,33 @@ TEST_F(Contacts, AnAbsentObjectHasNoContact) {
   EXPECT_EQ(tick(kTouching - 0.001).contacts[0].status, ContactStatus::kAllowed);
 }
 
-// The part is the pair's second object here.
 TEST_F(Contacts, APartThatComesSecondIsLateOrAbsentLikeOneThatComesFirst) {
-  Scene scene = test::cell_of({test::fixed("table", {test::ball(0.1)}, test::at(0, 0, 0)),
-                               test::moving("part", {test::ball(0.1)})});
-  scene.pairs[0].publish = true;
-  scene.zones.push_back(test::zone_over(scene, 0.05, 0.06));
-  scene.contacts.push_back(lift({0}));
-  const auto tick_part = [&](double x) -> const Report& {
-    const PoseSample part = test::sample(1, test::at(x, 0, 0), now += kTick);
-    return monitor->tick(std::span(&part, 1), now);
-  };
-  for (const bool has_ended : {false, true}) {
-    scene.contacts[0].end.distance = has_ended ? 0.01 : kInfinity;
-    begin(scene);
-    if (has_ended) tick_part(kTouching + 0.02);
-    tick_part(kTouching + 0.001);
-    EXPECT_EQ(tick_part(kTouching + 0.001).contacts[0].status,
-              has_ended ? ContactStatus::kEnded : ContactStatus::kAllowed);
-    now += 30'000'000;
-    const Report& late = tick_without_pose();
-    EXPECT_EQ(late.contacts[0].status, ContactStatus::kUnknown);
-    EXPECT_TRUE(late.zones[0].active);
-    ASSERT_TRUE(monitor->set_absent(1, true));
-    EXPECT_EQ(tick_without_pose().contacts[0].status, ContactStatus::kAbsent);
+  for (const std::uint32_t part : {0U, 1U}) {
+    std::vector<Object> objects{test::moving("part", {test::ball(0.1)}),
+                                test::fixed("table", {test::ball(0.1)}, test::at(0, 0, 0))};
+    if (part == 1) std::swap(objects[0], objects[1]);
+    Scene scene = test::cell_of(std::move(objects));
+    scene.pairs[0].publish = true;
+    scene.zones.push_back(test::zone_over(scene, 0.05, 0.06));
+    scene.contacts.push_back(lift({0}));
+    const auto tick_part = [&](double x) -> const Report& {
+      const PoseSample moved = test::sample(part, test::at(x, 0, 0), now += kTick);
+      return monitor->tick(std::span(&moved, 1), now);
+    };
+    for (const bool has_ended : {false, true}) {
+      scene.contacts[0].end.distance = has_ended ? 0.01 : kInfinity;
+      begin(scene);
+      if (has_ended) tick_part(kTouching + 0.02);
+      tick_part(kTouching + 0.001);
+      EXPECT_EQ(tick_part(kTouching + 0.001).contacts[0].status,
+                has_ended ? ContactStatus::kEnded : ContactStatus::kAllowed);
+      now += 30'000'000;
+      const Report& late = tick_without_pose();
+      EXPECT_EQ(late.contacts[0].status, ContactStatus::kUnknown);
+      EXPECT_TRUE(late.zones[0].active);
+      ASSERT_TRUE(monitor->set_absent(part, true));
+      EXPECT_EQ(tick_without_pose().contacts[0].status, ContactStatus::kAbsent);
+    }
   }
 }
 
