@@ -20,10 +20,8 @@ double ObjectPartsReader::read(MapReader& map, const YamlNode& node, Object& obj
   mesh_error_ = 0.0;
   const YamlNode* parts = map.optional("parts");
   if (parts == nullptr) {
-    if (auto shape = shapes_.read(map, node)) {
-      const std::string name = shape->kind;
-      add_part(*shape->node, std::move(*shape), name, Pose{}, object);
-    }
+    if (auto shape = shapes_.read(map, node))
+      add_part(*shape->node, std::move(*shape), shape->kind, Pose{}, object);
     return mesh_error_;
   }
   for (const std::string& kind : ShapeReader::kinds()) {
@@ -72,8 +70,8 @@ void ObjectPartsReader::read_part(const YamlNode& node, std::size_t place, Objec
 }
 
 // A moving object must be bounded: the broad phase and the bounds between two ticks enclose it in a
-// sphere.
-void ObjectPartsReader::add_part(const YamlNode& node, NamedShape shape, const std::string& name,
+// sphere. The shape is no value, since a caller reads its kind for `name`, in any order.
+void ObjectPartsReader::add_part(const YamlNode& node, NamedShape&& shape, const std::string& name,
                                  const Pose& pose, Object& object) {
   mesh_error_ = std::max(mesh_error_, shape.mesh_error);
   for (std::size_t i = 0; i < shape.shapes.size(); ++i) {

@@ -22,7 +22,7 @@ class ObjectPartsReader {
  private:
   void read_part(const YamlNode& node, std::size_t place, Object& object);
   // A part that is refused is reported at `node`.
-  void add_part(const YamlNode& node, NamedShape shape, const std::string& name, const Pose& pose,
+  void add_part(const YamlNode& node, NamedShape&& shape, const std::string& name, const Pose& pose,
                 Object& object);
   void refuse_same_part_names(const YamlNode& node, std::size_t first, const Object& object);
 

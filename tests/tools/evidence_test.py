@@ -2,7 +2,7 @@
 
 usage: evidence_test.py BUILD
 """
-import copy, json, pathlib, re, subprocess, sys, tempfile, unittest
+import copy, fnmatch, json, pathlib, re, subprocess, sys, tempfile, unittest
 
 import yaml
 
@@ -10,7 +10,7 @@ sys.dont_write_bytecode = True
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
 sys.path.insert(0, str(ROOT / "tools/evidence_parts"))
-import matrix, sbom
+import fmea, matrix, sbom
 
 GOOD = {
     "promises": [{"id": "P1", "text": "Distances of points are right.", "tests": ["Distance.OfPointsIsEuclid"]}],
@@ -74,6 +74,44 @@ class Evidence(unittest.TestCase):
             wanted.write_text(yaml.safe_dump({"promises": [{"id": "P1", "text": "All.", "tests": tests}]}))
             faults = matrix.judge(wanted, build, build)["faults"]
         self.assertEqual(faults, ["P1: Some.Fails: failed", "P1: Some.Skips: skipped", "P1: Some.Ends: not run"])
+
+    def test_JoinsTimesWithTheRowThatTellsThem(self):
+        page = """## Late
+| code | the line says | cause | what to do |
+|---|---|---|---|
+| `[poses-late]` | poses are late | the source stopped | start it again |
+| | the same | a rare transform | publish it |
+## Refused
+| CAUSE | meaning | published meanwhile | what to do |
+|---|---|---|---|
+| not finite; no pose | nonsense \\| damage | [unknown](#late) | repair it |
+## Tests
+| section | rows | tests |
+|---|---|---|
+| [late](#late), [refused](#refused) | poses | `Poses.*` |
+"""
+        time = {"kind": "Silence", "test": "Lies.Are/Silence", "p50_ticks": 21, "max_ticks": 23, "runs": 5}
+        found, lost = fmea.joined(page, {"poses-late": [time], "no pose": [time], "pose": [time]})
+        self.assertEqual([len(row["times"]) for row in found], [1, 0, 1])
+        self.assertEqual([row["detection"] for row in found], ["`[poses-late]`"] * 2 + ["not finite; no pose"])
+        self.assertEqual((found[2]["cause"], found[2]["effect"]), ("nonsense | damage", "unknown"))
+        self.assertEqual({row["test"] for row in found}, {"`Poses.*`"})
+        self.assertEqual(lost, ["monitor/FAULTS.md has no row for 'pose', which Lies.Are/Silence has told"])
+        case = {"name": "Are/Silence", "time until detected: poses-late": "21 23 5", "file": "x"}
+        self.assertEqual(list(fmea.times_of(case, "Lies")), [("poses-late", time)])
+
+    def test_EachRowOfThePageOfFaultsNamesTestsThatExist(self):
+        cases = [name for program in sorted(BUILD.glob("bin/*_tests")) for name in matrix.listed(program)]
+        patterns = set()
+        for row in fmea.rows((ROOT / "monitor/FAULTS.md").read_text()):
+            found = re.findall(r"`([A-Z][\w*]*\.[\w*]+)`", row["test"])
+            self.assertTrue(found, f"monitor/FAULTS.md: no test for {row['detection']}: {row['cause']}")
+            patterns.update(found)
+        for pattern in sorted(patterns):
+            known = any(fnmatch.fnmatch(name, place) for name in cases
+                        for place in (pattern, f"*/{pattern}", f"{pattern}/*", f"*/{pattern}/*"))
+            is_of_page = pattern.startswith("View.") and not (BUILD / "bin/view_tests").exists()
+            self.assertTrue(known or is_of_page, f"monitor/FAULTS.md names {pattern}")
 
     def test_NamesWhatALibraryIsAndWhereItComesFrom(self):
         listed = {each["name"]: each for each in sbom.document(ROOT, BUILD)["packages"]}

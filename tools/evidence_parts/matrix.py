@@ -3,6 +3,8 @@ import json, re, subprocess
 
 import yaml
 
+import fmea
+
 FIELDS = {"promises": {"id", "text", "tests"}, "assumptions": {"id", "text", "detected_by", "why", "tests"}}
 
 
@@ -49,20 +51,22 @@ def mistakes(requirements):
 
 
 def outcomes_of(program, names, out):
-    """Runs these cases. The command; and by name: passed, failed, or skipped. One that did not run is missing."""
+    """Runs these cases. The command; by name passed, failed or skipped; and the times that they have recorded. A case
+    that did not run is missing."""
     file = out / f"{program.name}.json"
     file.unlink(missing_ok=True)
     command = [str(program), "--gtest_filter=" + ":".join(names), f"--gtest_output=json:{file}", "--gtest_brief=1"]
     with open(out / f"{program.name}.log", "w") as log:
         subprocess.run(command, stdout=log, stderr=subprocess.STDOUT, check=False)
-    outcomes = {}
+    outcomes, times = {}, []
     if not file.exists():  # it ended by a signal
-        return command, outcomes
+        return command, outcomes, times
     for suite in json.loads(file.read_text())["testsuites"]:
         for case in suite["testsuite"]:
             state = "skipped" if case["result"] != "COMPLETED" else "failed" if case.get("failures") else "passed"
             outcomes[f"{suite['name']}.{case['name']}"] = state
-    return command, outcomes
+            times += fmea.times_of(case, suite["name"])
+    return command, outcomes, times
 
 
 def judge(requirements, build, out):
@@ -74,15 +78,17 @@ def judge(requirements, build, out):
     tests = sorted({test for kind in FIELDS for entry in wanted.get(kind) or [] for test in entry.get("tests") or []})
     cases = {test: [(program, name) for program in programs for name in names[program] if stands_for(test, name)]
              for test in tests}
-    outcomes, commands = {}, []
+    outcomes, commands, times = {}, [], {}
     if out is not None:
         for program in programs:
             of_program = sorted({name for all_of in cases.values() for where, name in all_of if where == program})
             if of_program:
                 print(f"evidence: {len(of_program)} cases of {program.name}", flush=True)
-                command, states = outcomes_of(program, of_program, out)
+                command, states, recorded = outcomes_of(program, of_program, out)
                 outcomes.update(states)
                 commands.append(" ".join(command))
+                for name, time in recorded:
+                    times.setdefault(name, []).append(time)
 
     def outcome(test):
         if not cases[test]:
@@ -101,4 +107,4 @@ def judge(requirements, build, out):
             good = {"passed"} if out is not None else {"passed", "not run"}
             faults += [f"{entry.get('id')}: {result['name']}: {result['outcome']}"
                        for result in results if result["outcome"] not in good]
-    return {"matrix": matrix, "faults": faults, "commands": commands}
+    return {"matrix": matrix, "faults": faults, "commands": commands, "times": times}

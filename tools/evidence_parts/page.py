@@ -41,6 +41,25 @@ def facts(of):
                    for key, value in of.items())
 
 
+def times(entry):
+    return "<td>" + "<br>".join(
+        f"{escape(time['kind'])}: {time['p50_ticks']} / {time['max_ticks']} <small>of {time['runs']}</small>"
+        for time in entry["times"]) + "</td>"
+
+
+def fmea(evidence):
+    return "".join(row(*(cell(entry[of]) for of in ("section", "cause", "effect", "detection")), times(entry),
+                       cell(entry["reaction"]),
+                       cell("; ".join([*sorted({time["test"] for time in entry["times"]}), entry["test"]])))
+                   for entry in evidence["fmea"])
+
+
+def coverage(evidence):
+    return "".join(row(cell(room), *(cell(f"{of[kind]} % of {of[kind + '_of']}; at least {of['at_least'][kind]} %")
+                                     for kind in ("branches", "mcdc")))
+                   for room, of in evidence["coverage"].get("rooms", {}).items())
+
+
 def libraries(evidence):
     return "".join(row(cell(each["name"]), cell(each.get("versionInfo", "")), cell(each.get("sourceInfo", "")),
                        cell(each.get("licenseComments", each["licenseDeclared"])))
@@ -57,10 +76,14 @@ def of(evidence):
 <h2>Faults of this run</h2><ul>{faults}</ul>
 <h2>What was run</h2><table>{facts({'commit': commit, 'time': evidence['time'], **evidence['machine']})}
 {facts(evidence['build'])}{facts({'commands (whole in evidence.json)': commands, 'static analysis': evidence['static_analysis']['outcome'],
-                                  'not run': evidence['not_run']})}</table>
+                                  'coverage': evidence['coverage']['outcome'], 'not run': evidence['not_run']})}</table>
 <h2>Promises</h2><table><tr><th>id<th>promise<th>tests in this run</tr>{promises(evidence)}</table>
 <h2>Assumptions of use</h2><table><tr><th>id<th>assumption<th>what detects a breach<th>tests in this run</tr>
 {assumptions(evidence)}</table>
+<h2>Faults: cause, effect, detection, reaction</h2><p>The rows are those of monitor/FAULTS.md. Times are ticks of 1 ms from
+the beginning of a fault until it is told, median / longest of so many runs of the campaign of inputs that lie, by kind.</p>
+<table><tr><th>section<th>cause<th>effect<th>detection<th>time until detected<th>reaction<th>tests</tr>{fmea(evidence)}</table>
+<h2>Coverage</h2><table><tr><th>room<th>branches<th>MC/DC</tr>{coverage(evidence)}</table>
 <h2>Libraries</h2><p>The same list as SPDX: sbom.spdx.json.</p>
 <table><tr><th>name<th>version<th>source<th>licence</tr>{libraries(evidence)}</table></html>
 """

@@ -11,9 +11,9 @@ def setting(build, name):
     return found.group(1) if found else "not stated"
 
 
-def analysis(root):
-    """The outcome of tools/analyse, if it ran on this commit."""
-    file = root / "build/analysis/outcome.json"
+def outcome(root, name):
+    """What tools/analyse or tools/coverage found, if it ran on this commit."""
+    file = root / "build" / name / "outcome.json"
     if not file.exists():
         return {"outcome": "not run"}
     found = json.loads(file.read_text())
@@ -35,7 +35,8 @@ def of(root, build):
         "build": {"type": setting(build, "CMAKE_BUILD_TYPE"), "flags": setting(build, "CMAKE_CXX_FLAGS"),
                   "sanitize": setting(build, "CLEARANCE_SANITIZE"),
                   "compiler": output(setting(build, "CMAKE_CXX_COMPILER"), "--version").splitlines()[:1]},
-        "static_analysis": analysis(root),
-        "not_run": ["coverage", "tests that the matrix does not name (tools/check runs all)",
+        "static_analysis": outcome(root, "analysis"),
+        "coverage": outcome(root, "coverage"),
+        "not_run": ["tests that the matrix does not name (tools/check runs all)",
                     "sanitizers and campaigns (tools/check --all)", "slips (tests/mutants/run)"],
     }

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <deque>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "monitor/ask/asker.hpp"
@@ -13,6 +14,7 @@
 #include "monitor/loop/tick_loop.hpp"
 #include "monitor/sensors/sensors.hpp"
 #include "monitor/tick/read_inputs.hpp"
+#include "tests/monitor/adversary/detection.hpp"
 #include "tests/monitor/adversary/lying_commands.hpp"
 #include "tests/monitor/adversary/lying_partner.hpp"
 
@@ -63,6 +65,7 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
       if (fault.lie == Lie::kAttached) truth_.carry(fault.from, fault.to);
       if (fault.lie == Lie::kRestored) partner_from_ = fault.from;
     }
+    if (run.sending.faults.size() == 1) detection_.emplace(cell.scene, run.sending.faults.front());
   }
 
   std::int64_t realtime_ns() noexcept override { return kStartOfLies + machine_; }
@@ -100,8 +103,13 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
     if (told != nullptr && partner_->differs()) judge_.note_partner(report.cycle);
     const std::int64_t t = sending_.factor ? report.now_ns - kStartOfLies : now_;
     judge_.judge(told == nullptr ? report : *told, t);
+    if (detection_) detection_->follow(loop_->state().monitor(), *sensors_, t);
   }
-  [[nodiscard]] Verdict verdict() const { return judge_.verdict(); }
+  [[nodiscard]] Verdict verdict() const {
+    Verdict verdict = judge_.verdict();
+    if (detection_) verdict.detected = detection_->told();
+    return verdict;
+  }
   [[nodiscard]] FrameExchange& frames() noexcept { return frames_; }
   [[nodiscard]] SimulatedTime* time() noexcept { return sending_.factor ? &time_ : nullptr; }
   // The loop must outlive this.
@@ -223,6 +231,7 @@ class LyingWorld final : public Clock, public PoseSource, public ReportSink {
   Intake intake_;
   LyingSenders senders_;
   TruthJudge judge_;
+  std::optional<Detection> detection_;  // of a single fault
   LyingCommands commands_;
   std::unique_ptr<LyingPartner> partner_;
   std::int64_t partner_from_ = -1;  // it is to begin then

@@ -13,6 +13,7 @@
 
 #include "monitor/interface/question.hpp"
 #include "monitor/interface/report.hpp"
+#include "tests/monitor/adversary/detection.hpp"
 #include "tests/monitor/adversary/lies.hpp"
 #include "tests/monitor/adversary/true_motion.hpp"
 
@@ -51,6 +52,7 @@ struct Verdict {
   std::int64_t recovers = 0;                        // the longest that it may be
   std::uint64_t asked = 0, answered = 0, free = 0;  // questions
   std::string refusal;                              // of the last one that has no answer
+  Detected detected;                                // a single fault
 
   [[nodiscard]] bool is_true() const;
   [[nodiscard]] std::string text() const;

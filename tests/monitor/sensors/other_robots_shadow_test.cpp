@@ -131,12 +131,12 @@ class OtherRobotsShadow : public SensorsTest {
 TEST_F(OtherRobotsShadow, IsUnseenAndThatOfTheOwnRobotIsNot) {
   Random random(20261);
   int shadowed = 0, clear = 0;
-  for (int i = 0; i < 40; ++i) {
+  for (int i = 0; i < 80; ++i) {
     // The right beam is above the left one, and they do not come near each other.
     const Beams beams = {BeamPose{random.uniform(-0.5, 0.5), Vec3(0.0, 0.0, 0.0)},
                          BeamPose{random.uniform(-2.0, 2.0),
-                                  Vec3(random.uniform(-0.3, 0.6), random.uniform(-0.2, 0.7),
-                                       random.uniform(0.3, 1.2))}};
+                                  Vec3{random.uniform(-0.3, 0.6), random.uniform(-0.2, 0.7),
+                                       random.uniform(0.3, 1.2)}}};
     make_cell(beams, "");
     std::array<double, 2> truth{};
     const std::array<double, 2> found = unseen(beams, truth);

@@ -28,7 +28,7 @@ TEST(SpscRing, SaysWhenItIsFullAndWhenItIsEmpty) {
 }
 
 TEST(SpscRing, CarriesEveryValueInOrderBetweenTwoThreads) {
-  constexpr std::uint64_t kValues = 200'000;
+  constexpr std::uint64_t kValues = 20'000;
   SpscRing<std::uint64_t> ring(8);
   std::thread filler([&] {
     for (std::uint64_t value = 0; value < kValues;) {

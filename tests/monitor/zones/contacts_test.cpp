@@ -6,6 +6,8 @@
 
 #include <list>
 #include <memory>
+#include <utility>
+#include <vector>
 
 #include "tests/monitor/tick/small_cells.hpp"
 #include "tests/monitor/zones/lift.hpp"
@@ -215,6 +217,36 @@ TEST_F(Contacts, AnAbsentObjectHasNoContact) {
   ASSERT_TRUE(monitor->set_absent(kPart, false));
   EXPECT_TRUE(tick_without_pose().zones[0].active);
   EXPECT_EQ(tick(kTouching - 0.001).contacts[0].status, ContactStatus::kAllowed);
+}
+
+TEST_F(Contacts, APartThatComesSecondIsLateOrAbsentLikeOneThatComesFirst) {
+  for (const std::uint32_t part : {0U, 1U}) {
+    std::vector<Object> objects{test::moving("part", {test::ball(0.1)}),
+                                test::fixed("table", {test::ball(0.1)}, test::at(0, 0, 0))};
+    if (part == 1) std::swap(objects[0], objects[1]);
+    Scene scene = test::cell_of(std::move(objects));
+    scene.pairs[0].publish = true;
+    scene.zones.push_back(test::zone_over(scene, 0.05, 0.06));
+    scene.contacts.push_back(lift({0}));
+    const auto tick_part = [&](double x) -> const Report& {
+      const PoseSample moved = test::sample(part, test::at(x, 0, 0), now += kTick);
+      return monitor->tick(std::span(&moved, 1), now);
+    };
+    for (const bool has_ended : {false, true}) {
+      scene.contacts[0].end.distance = has_ended ? 0.01 : kInfinity;
+      begin(scene);
+      if (has_ended) tick_part(kTouching + 0.02);
+      tick_part(kTouching + 0.001);
+      EXPECT_EQ(tick_part(kTouching + 0.001).contacts[0].status,
+                has_ended ? ContactStatus::kEnded : ContactStatus::kAllowed);
+      now += 30'000'000;
+      const Report& late = tick_without_pose();
+      EXPECT_EQ(late.contacts[0].status, ContactStatus::kUnknown);
+      EXPECT_TRUE(late.zones[0].active);
+      ASSERT_TRUE(monitor->set_absent(part, true));
+      EXPECT_EQ(tick_without_pose().contacts[0].status, ContactStatus::kAbsent);
+    }
+  }
 }
 
 // The tick in which the pair is far enough is the last of the allowance.

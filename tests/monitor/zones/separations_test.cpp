@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <vector>
 
 #include "monitor/zones/protective_distance.hpp"
 #include "tests/monitor/replay/report_bytes.hpp"
@@ -17,10 +19,10 @@ namespace {
 
 using test::Meeting, test::usual_terms, test::kHumanRadius, test::kRobotRadius;
 
-TEST(Separations, APersonWhoIsKnownNotToBeThereLimitsNothing) {
+void expect_no_limit_without(std::uint32_t absent) {
   Meeting cell;
   ASSERT_LT(cell.tick(0.4, 0.0, 1.0).scaling, 1.0);
-  ASSERT_TRUE(cell.monitor->set_absent(0, true));
+  ASSERT_TRUE(cell.monitor->set_absent(absent, true));
   const PairSeparation& pair = cell.tick(0.4, 0.0, 1.0);
   EXPECT_EQ(pair.validity, SeparationValidity::kAbsent);
   EXPECT_EQ(pair.scaling, 1.0);
@@ -32,10 +34,14 @@ TEST(Separations, APersonWhoIsKnownNotToBeThereLimitsNothing) {
   EXPECT_EQ(zone.scaling, 1.0);
   EXPECT_EQ(zone.remaining, kInfinity);
 
-  cell.monitor->set_absent(0, false);
+  cell.monitor->set_absent(absent, false);
   EXPECT_EQ(cell.wait(test::kTick).validity, SeparationValidity::kUnknown) << "until the next pose";
   EXPECT_EQ(cell.report->separated_zones[0].scaling, 0.0);
   EXPECT_EQ(cell.tick(0.4, 0.0, 1.0).validity, SeparationValidity::kMeasured);
+}
+
+TEST(Separations, APersonOrARobotThatIsKnownNotToBeThereLimitsNothing) {
+  for (const std::uint32_t absent : {0U, 1U}) expect_no_limit_without(absent);
 }
 
 TEST(Separation, OfARobotThatApproachesHasTheTermsOfTheStandard) {
@@ -253,6 +259,23 @@ TEST(Separation, OfAnUnknownSpeedHasTheOneThatTheZoneStatesOrIsUnknown) {
     EXPECT_EQ(report.separated_pairs[0].validity, SeparationValidity::kAssumed);
     EXPECT_EQ(report.separated_pairs[0].robot_speed, stated);
   }
+}
+
+TEST(Separation, IsUnknownWhereNoBoundOfTheDistanceIs) {
+  Separation terms = usual_terms();
+  terms.human_is_first = {1};
+  Scene scene = test::cell_of({test::moving("person", {test::floor()}),
+                               test::fixed("robot", {test::floor()}, test::at(0, 0, 0))});
+  scene.pairs[0].publish = true;
+  scene.zones.push_back(test::zone_over(scene, 0.3, 0.4));
+  scene.zones[0].separation = terms;
+  Monitor monitor(scene);
+  PoseSample person = test::sample(0, test::at(0, 0, 0), test::kStart);
+  person.has_twist = true;
+  const Report& report = monitor.tick({&person, 1}, test::kStart);
+  ASSERT_NE(report.pairs[0].status, PairStatus::kUnknown);
+  ASSERT_EQ(report.pairs[0].lower, -kInfinity);
+  expect_unknown(report);
 }
 
 TEST(Separation, OfAZoneIsTheLeastOfItsPairs) {
