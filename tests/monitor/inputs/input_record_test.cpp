@@ -35,7 +35,7 @@ struct Case {
 };
 
 // As a pose or a position, but for its answers.
-struct Sample {
+struct HeardPose {
   const Case& of;
   bool is_used = false;
   [[nodiscard]] std::optional<Reject> malformed() const {
@@ -77,7 +77,7 @@ TEST(InputRecord, IsTakenOrRefusedByTheFirstCauseThatHolds) {
     input.owner.take(kFirst, kNow - 50 * kMs);
     input.has_value = of.has_value;
     input.stamp_ns = kNow - 50 * kMs;
-    Sample sample{of};
+    HeardPose sample{of};
     const SampleOrigin origin{.source = of.is_rival ? kSecond : kFirst,
                               .namesake = of.is_namesake ? kFirst : kNoSource,
                               .stamp_ns = of.stamp_ns()};
