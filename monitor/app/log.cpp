@@ -183,6 +183,7 @@ bool is_logged(LogLevel level) { return spdlog::should_log(kLevels[static_cast<i
 void log_text(LogLevel level, std::string_view text, std::string_view code) {
   const std::string line = code.empty() ? std::string(text) : fmt::format("{} [{}]", text, code);
   spdlog::default_logger_raw()->log(kLevels[static_cast<int>(level)], std::string_view(line));
+  note_intervention(code, text);
 }
 
 void drain_log() {
