@@ -1,5 +1,5 @@
 // clearance-replay: publishes a recording over DDS again, runs it through the monitor and checks
-// the result, or compares two recordings.
+// the result, compares two recordings, or verifies a log of interventions.
 #include <cstdio>
 #include <optional>
 
@@ -18,7 +18,8 @@ constexpr const char* kExamples = R"(Examples:
   clearance-replay publish run.mcap --rate 2 --start 10 --end 20
   clearance-replay check run.mcap --compare
   clearance-replay check run.mcap --cell cell.yaml --expect-min-distance 0.05 --expect-no-zone stop
-  clearance-replay compare left.mcap right.mcap)";
+  clearance-replay compare left.mcap right.mcap
+  clearance-replay log interventions.jsonl)";
 
 constexpr const char* kPublishFooter = R"(Exit status:
   0  every message was published, or SIGINT, SIGTERM or SIGHUP stopped the replay
@@ -56,6 +57,15 @@ constexpr const char* kCompareFooter = R"(Exit status:
 
 Example:
   clearance-replay compare left.mcap right.mcap)";
+
+constexpr const char* kLogFooter = R"(Exit status:
+  0  every line is as it was written
+  1  a line is not (the first one is named), --holds is of no line, or the file cannot be read
+  2  wrong usage
+  5  the last line is not whole: its program was killed while it wrote
+
+Example:
+  clearance-replay log interventions.jsonl --holds 3f79bb7b435b05321651daefd374cdc681dc06faa65e374e38337b88ca046dea)";
 
 void add_span(CommandLine& line, RecordedSpan& span, const char* files) {
   line.add({
@@ -233,6 +243,26 @@ CommandLine compare_line(CompareArguments& arguments) {
           }};
 }
 
+CommandLine interventions_line(LogArguments& arguments) {
+  return {
+      .about =
+          "Verify the chain of a log of interventions (clearanced --interventions), print it, "
+          "and name the first line that was changed, removed, inserted or moved",
+      .footer = kLogFooter,
+      .name = "log",
+      .options = {
+          {"FILE", &arguments.file, "The log", required()},
+          {"--holds", &arguments.holds,
+           "Fail if no line has this hash, which the daemon's log told at a start or an end: lines "
+           "at the end were cut off, or all lines were written anew",
+           expecting("64 hexadecimal digits",
+                     [](const std::string& text) {
+                       return text.size() == 64 &&
+                              text.find_first_not_of("0123456789abcdef") == std::string::npos;
+                     })},
+      }};
+}
+
 bool is_forwards(const RecordedSpan& span) {
   if (span.start_s <= span.end_s) return true;
   print(stderr, "clearance-replay: --start {:g} lies after --end {:g}\n", span.start_s, span.end_s);
@@ -243,11 +273,16 @@ int run(int argc, char** argv, StopSignal& stop) {
   PublishArguments publish;
   CheckArguments check;
   CompareArguments compare;
+  LogArguments log;
   CommandLine line{
-      "Publishes a recording again, checks a robot program against one, or compares two.",
+      "Publishes a recording again, checks a robot program against one, compares two, or verifies "
+      "a "
+      "log of interventions.",
       kExamples};
-  line.subcommands = {publish_line(publish), check_line(check), compare_line(compare)};
+  line.subcommands = {publish_line(publish), check_line(check), compare_line(compare),
+                      interventions_line(log)};
   if (const auto done = parse(line, argc, argv)) return *done;
+  if (line.chosen == "log") return verify_log(log);
   if (line.chosen == "compare") return compare_two_recordings(compare, stop);
   const bool publishes = line.chosen == "publish";
   if (!is_forwards(publishes ? publish.span : check.span)) return kUsage;

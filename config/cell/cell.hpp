@@ -43,6 +43,10 @@ struct Cell {
   // planning scenes. Absolute; each once, in the order in which they were read.
   std::filesystem::path file = {};
   std::vector<std::filesystem::path> files = {};
+  std::vector<std::string> file_hashes = {};  // SHA-256 of each of these
+  // SHA-256 of all that the revision covers: the digests of the text without the partner's name, of
+  // each file, and of what meshes were split into, in the order in which they were read.
+  std::string hash = {};
 };
 
 // Tells whether `name` is a DDS partition that Clearance accepts: at most 255 bytes, without

@@ -343,6 +343,8 @@ CellResult CellReadings::read(const YamlNode& document, const std::string& yaml)
   cell.yaml = yaml;
   cell.file = std::filesystem::absolute(s.file).lexically_normal();
   cell.files = s.revision.files();
+  cell.file_hashes = s.revision.file_hashes();
+  cell.hash = s.revision.hash();
   return cell;
 }
 

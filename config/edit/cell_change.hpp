@@ -3,9 +3,11 @@
 // Lengths are in metres, poses are of the object in the named frame. Names are those of the cell.
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <variant>
 #include <vector>
 
@@ -169,10 +171,40 @@ struct ReadCellAgain {
   std::string file;  // absolute, or relative to the cell's folder; empty: the cell's own file
 };
 
+// Changes nothing: a running daemon logs the text, such as what a person has acknowledged, or why
+// the other changes are made.
+struct Note {
+  std::string text;
+};
+
 using CellChange =
     std::variant<AddObject, ReplaceObject, AddFromTemplate, RemoveObject, SetAbsent, Attach, Detach,
                  Place, SetMaxSpeed, SetMargin, SetAgeLimit, SetSource, SetPair, SetZoneThresholds,
                  AllowContact, WithdrawContact, ReplaceCell, ReadCellAgain, AttachRobot,
-                 DetachRobot>;
+                 DetachRobot, Note>;
+
+// The names of the changes for people, in the order of CellChange.
+inline constexpr std::array<std::string_view, std::variant_size_v<CellChange>> kChangeNames = {
+    "add_object",
+    "replace_object",
+    "add_from_template",
+    "remove_object",
+    "set_absent",
+    "attach",
+    "detach",
+    "place",
+    "set_max_speed",
+    "set_margin",
+    "set_age_limit",
+    "set_source",
+    "set_pair",
+    "set_zone_thresholds",
+    "allow_contact",
+    "withdraw_contact",
+    "replace_cell",
+    "read_cell_again",
+    "attach_robot",
+    "detach_robot",
+    "note"};
 
 }  // namespace clearance

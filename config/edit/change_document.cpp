@@ -63,6 +63,10 @@ class ChangeMaker {
   Fault operator()(const ReadCellAgain&) {
     return ChangeFault{"", "found a cell file to be read; expected its text here"};
   }
+  Fault operator()(const Note& change) {
+    if (!change.text.empty()) return std::nullopt;
+    return ChangeFault{"", "found a note without text; expected what is to be logged"};
+  }
 
  private:
   // An entry of a list, and its place.

@@ -134,6 +134,7 @@ class ChangeKeys {
     }
   }
   void read(ReadCellAgain& change) { text(map_.optional("file"), change.file); }
+  void read(Note& change) { text(map_.required("text"), change.text); }
 
  private:
   void name(std::string_view key, std::string& out) {
@@ -228,21 +229,26 @@ class ChangeReader {
     std::optional<CellChange> (ChangeReader::*read)(std::string_view name, const YamlNode&);
   };
 
+  // The value of AddObject and ReplaceObject is the entry itself.
   template <class Change>
   std::optional<CellChange> change(std::string_view name, const YamlNode& node) {
-    Change change;
-    MapReader map(node, fmt::format("a change '{}'", name), diagnostics_);
-    ChangeKeys(map, quantities_, directory_).read(change);
-    map.refuse_unknown_keys();
-    return change;
+    if constexpr (std::is_same_v<Change, AddObject> || std::is_same_v<Change, ReplaceObject>) {
+      if (node.kind == YamlNode::Kind::kMap) return Change{line_of(node)};
+      diagnostics_.add(node,
+                       fmt::format("found {}; expected one entry of 'objects'", describe(node)));
+      return std::nullopt;
+    } else {
+      Change change;
+      MapReader map(node, fmt::format("a change '{}'", name), diagnostics_);
+      ChangeKeys(map, quantities_, directory_).read(change);
+      map.refuse_unknown_keys();
+      return change;
+    }
   }
-  // AddObject and ReplaceObject: the value is the entry itself.
-  template <class Change>
-  std::optional<CellChange> entry(std::string_view, const YamlNode& node) {
-    if (node.kind == YamlNode::Kind::kMap) return Change{line_of(node)};
-    diagnostics_.add(node,
-                     fmt::format("found {}; expected one entry of 'objects'", describe(node)));
-    return std::nullopt;
+  template <std::size_t... kKind>
+  static constexpr std::array<Kind, sizeof...(kKind)> kinds(std::index_sequence<kKind...>) {
+    return {Kind{kChangeNames[kKind],
+                 &ChangeReader::change<std::variant_alternative_t<kKind, CellChange>>}...};
   }
 
   const Quantities& quantities_;
@@ -251,29 +257,7 @@ class ChangeReader {
 };
 
 std::optional<CellChange> ChangeReader::read(const YamlNode& node) {
-  static constexpr std::array<Kind, 20> kKinds = {{
-      {"add_object", &ChangeReader::entry<AddObject>},
-      {"replace_object", &ChangeReader::entry<ReplaceObject>},
-      {"add_from_template", &ChangeReader::change<AddFromTemplate>},
-      {"remove_object", &ChangeReader::change<RemoveObject>},
-      {"set_absent", &ChangeReader::change<SetAbsent>},
-      {"attach", &ChangeReader::change<Attach>},
-      {"detach", &ChangeReader::change<Detach>},
-      {"attach_robot", &ChangeReader::change<AttachRobot>},
-      {"detach_robot", &ChangeReader::change<DetachRobot>},
-      {"place", &ChangeReader::change<Place>},
-      {"set_max_speed", &ChangeReader::change<SetMaxSpeed>},
-      {"set_margin", &ChangeReader::change<SetMargin>},
-      {"set_age_limit", &ChangeReader::change<SetAgeLimit>},
-      {"set_source", &ChangeReader::change<SetSource>},
-      {"set_pair", &ChangeReader::change<SetPair>},
-      {"set_zone_thresholds", &ChangeReader::change<SetZoneThresholds>},
-      {"allow_contact", &ChangeReader::change<AllowContact>},
-      {"withdraw_contact", &ChangeReader::change<WithdrawContact>},
-      {"replace_cell", &ChangeReader::change<ReplaceCell>},
-      {"read_cell_again", &ChangeReader::change<ReadCellAgain>},
-  }};
-  static_assert(kKinds.size() == std::variant_size_v<CellChange>);
+  static constexpr auto kKinds = kinds(std::make_index_sequence<std::variant_size_v<CellChange>>());
   if (node.kind != YamlNode::Kind::kMap || node.entries.size() != 1) {
     diagnostics_.add(
         node, fmt::format("found {}; expected one change, as 'attach: {{...}}'", describe(node)));

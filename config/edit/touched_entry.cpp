@@ -29,6 +29,7 @@ struct Touched {
   TouchedEntry operator()(const WithdrawContact& of) const { return {"contacts", of.contact}; }
   TouchedEntry operator()(const ReplaceCell&) const { return {}; }
   TouchedEntry operator()(const ReadCellAgain&) const { return {}; }
+  TouchedEntry operator()(const Note&) const { return {}; }
   TouchedEntry operator()(const AttachRobot& change) const { return {"robots", change.robot}; }
   TouchedEntry operator()(const DetachRobot& change) const { return {"robots", change.robot}; }
   template <class Change>

@@ -114,9 +114,11 @@ MeshLibrary::File& MeshLibrary::load(const MeshUse& use) {
       file.refusal = {MeshRefusal::Kind::kFile, std::move(fault->reason)};
     } else {
       file.bytes = std::get<std::string>(std::move(bytes));
+      file.digest = sha256(file.bytes);
     }
   }
-  if (!file.refusal && !std::exchange(file.counted, true)) revision_.add_file(path, file.bytes);
+  if (!file.refusal && !std::exchange(file.counted, true))
+    revision_.add_file(path, file.bytes, file.digest);
   return file;
 }
 

@@ -86,7 +86,7 @@ class MeshLibrary {
  private:
   void begin(bool splits);
   struct File {
-    std::string bytes;
+    std::string bytes, digest;         // and their SHA-256
     std::optional<TriangleMesh> mesh;  // once it was needed; in the file's unit
     std::optional<MeshRefusal> refusal;
     bool counted = false;  // in the revision

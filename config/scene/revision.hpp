@@ -1,5 +1,6 @@
-// The files of a cell: their paths, and their 64-bit FNV-1a hash, which distinguishes two scenes.
-// The hash detects mistakes, not attacks.
+// The files of a cell: their paths, and two hashes of all that was read. The revision, 64-bit
+// FNV-1a, distinguishes two scenes in each message; it detects mistakes, not attacks. SHA-256
+// detects both.
 #pragma once
 
 #include <algorithm>
@@ -15,6 +16,7 @@
 
 #include "config/text/file_bytes.hpp"
 #include "config/text/fnv1a.hpp"
+#include "config/text/sha256.hpp"
 
 namespace clearance {
 
@@ -69,16 +71,28 @@ class Revision {
     return std::nullopt;
   }
 
-  void add(std::string_view bytes) noexcept { hash_.add(bytes); }
+  void add(std::string_view bytes) { add(bytes, sha256(bytes)); }
 
-  // Adds a file's bytes, and keeps its path.
+  // Adds a file's bytes, and keeps its path. `digest`: their SHA-256.
   void add_file(const std::filesystem::path& path, std::string_view bytes) {
-    add(bytes);
+    add_file(path, bytes, sha256(bytes));
+  }
+  void add_file(const std::filesystem::path& path, std::string_view bytes,
+                const std::string& digest) {
+    add(bytes, digest);
     const auto absolute = std::filesystem::absolute(path).lexically_normal();
-    if (std::ranges::find(files_, absolute) == files_.end()) files_.push_back(absolute);
+    if (std::ranges::find(files_, absolute) != files_.end()) return;
+    files_.push_back(absolute);
+    file_hashes_.push_back(digest);
   }
   // Returns absolute paths, each once, in the order in which they were added.
   [[nodiscard]] const std::vector<std::filesystem::path>& files() const noexcept { return files_; }
+  // The SHA-256 of each of files().
+  [[nodiscard]] const std::vector<std::string>& file_hashes() const noexcept {
+    return file_hashes_;
+  }
+  // The SHA-256 of the digests of all that was added, one after the other.
+  [[nodiscard]] std::string hash() const { return sha256(digests_); }
 
   // The hash is never 0, which means "not checked" on the wire.
   [[nodiscard]] std::uint64_t value() const noexcept {
@@ -86,10 +100,17 @@ class Revision {
   }
 
  private:
+  void add(std::string_view bytes, std::string_view digest) {
+    hash_.add(bytes);
+    digests_ += digest;
+  }
+
   Fnv1a hash_;
+  std::string digests_;
   std::filesystem::path root_;
   MayRead may_read_;
   std::vector<std::filesystem::path> files_;
+  std::vector<std::string> file_hashes_;
 };
 
 }  // namespace clearance

@@ -54,4 +54,14 @@ std::variant<std::string, FileFault> read_bytes(const std::string& path) {
   return bytes;
 }
 
+bool write_bytes(int descriptor, std::string_view bytes) noexcept {
+  while (!bytes.empty()) {
+    const ssize_t written = ::write(descriptor, bytes.data(), bytes.size());
+    if (written < 0 && errno == EINTR) continue;
+    if (written <= 0) return false;
+    bytes.remove_prefix(static_cast<std::size_t>(written));
+  }
+  return true;
+}
+
 }  // namespace clearance

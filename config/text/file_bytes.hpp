@@ -1,10 +1,11 @@
-// Opens and reads the files that cells, command lines and bags name.
+// Opens, reads and writes the files that cells, command lines and bags name.
 #pragma once
 
 #include <cstdio>
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <variant>
 
 namespace clearance {
@@ -28,5 +29,9 @@ struct FileFault {
 
 // Returns the bytes of a regular file, at most 256 MiB, or why there are none.
 [[nodiscard]] std::variant<std::string, FileFault> read_bytes(const std::string& path);
+
+// Writes all of this, where the kernel may take less at once. False: it has failed, with errno, and
+// a part may be written.
+[[nodiscard]] bool write_bytes(int descriptor, std::string_view bytes) noexcept;
 
 }  // namespace clearance

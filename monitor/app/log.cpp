@@ -212,6 +212,7 @@ void log_text(LogLevel level, std::string_view text, std::string_view code) {
   const std::string line = code.empty() ? std::string(text) : fmt::format("{} [{}]", text, code);
   spdlog::default_logger_raw()->log(kLevels[static_cast<int>(level)], std::string_view(line));
   keep(level, line);
+  note_intervention(code, text);
 }
 
 void keep_lines(std::size_t most) {

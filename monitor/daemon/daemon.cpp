@@ -11,6 +11,8 @@
 #include <utility>
 
 #include "monitor/app/log_line.hpp"
+#include "monitor/daemon/intervention_notes.hpp"
+#include "monitor/files/build_info.hpp"
 #include "monitor/intake/tracked_frames.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/loop/summary.hpp"
@@ -129,7 +131,10 @@ std::vector<ReportSink*> Daemon::first_sinks() {
 CellReload::Actions Daemon::reload_actions() {
   return {.followed = [this] { return followed(); },
           .put = [this](GivenCommand given) { return scene_thread_->put(std::move(given)); },
-          .note_change = [this](const CommandResult& result) { return note_change(result); },
+          .note_change =
+              [this](const CommandResult& result) {
+                return note_change(result, {{"by", "SIGHUP or --reload"}});
+              },
           .files = [this] { return changer_->cell().files; },
           .list_mistakes = options_.list_mistakes};
 }
@@ -160,6 +165,7 @@ void Daemon::run(StopSignal& signal) {
   if (options_.fifo_priority > 0) log_refusal(lock_memory());
   const Scene& scene = now_.cell->scene;
   log_line(lines::kStarted, scene.name, scene.revision, scene.rate_hz, participant_.where());
+  note_start();
   log_line(lines::kHowToReach, participant_.how_to_reach());
   const SelfTest& test = loop_->state().monitor().self_test();
   log_line(lines::kSelfTest, (test.bytes() + 999) / 1000, test.ticks());
@@ -192,6 +198,7 @@ void Daemon::run(StopSignal& signal) {
     service_.notice(reports_.published_cycle());
   }
   service_.stopping();
+  const bool ended_by_itself = done;
   stop_ = true;
   ticking.join();
   stop_sharing();
@@ -205,6 +212,12 @@ void Daemon::run(StopSignal& signal) {
     log_line(lines::kSelfTestFailed, loop_->state().monitor().self_test().fault(),
              loop_->state().cycle());
   log_line(lines::kStopped, counted(loop_->statistics().cycle, "tick"));
+  if (options_.interventions == nullptr) return;
+  options_.interventions->note("stop", {{"ticks", loop_->statistics().cycle},
+                                        {"cause", damaged()         ? "self-test"
+                                                  : yielded()       ? "another daemon"
+                                                  : ended_by_itself ? "--ticks"
+                                                                    : "signal"}});
 }
 
 // Both threads are prepared and wait for work. join() has logged a refusal of this priority.
@@ -238,9 +251,14 @@ void Daemon::end_requests() {
 
 bool Daemon::put(SceneTask task) {
   if (AnswerCommand* const asked = answer_of(task)) {
-    *asked = [this, answer = std::move(*asked)](const CommandResult& result) {
-      note_change(result);
+    const auto note = options_.interventions != nullptr ? note_of(task) : nlohmann::ordered_json();
+    *asked = [this, note, notes = notes_of(task),
+              answer = std::move(*asked)](const CommandResult& result) {
+      note_change(result, note);
       if (recording_) recording_->note_command();
+      if (result.done())
+        for (const std::string& text : notes)
+          log_line(lines::kNoted, result.client, result.request, text);
       if (answer) answer(result);
     };
   }
@@ -248,14 +266,29 @@ bool Daemon::put(SceneTask task) {
 }
 
 // Returns false if nothing has changed.
-bool Daemon::note_change(const CommandResult& result) {
+bool Daemon::note_change(const CommandResult& result, const nlohmann::ordered_json& asked) {
   if (!result.done() || result.in_force_from == 0) return false;
   const std::uint64_t before = revision_;
   if (before == result.scene_revision) return false;
   if (shares_) shares_->note_change();
   revision_ = result.scene_revision;
   log_line(lines::kSceneChanged, result.scene_revision, result.in_force_from, before);
+  if (options_.interventions == nullptr) return true;
+  nlohmann::ordered_json note = asked;
+  note["in_force_from"] = result.in_force_from;
+  note.update(note_of(changer_->cell()));
+  options_.interventions->note("scene-changed", note);
   return true;
+}
+
+void Daemon::note_start() const {
+  if (options_.interventions == nullptr) return;
+  nlohmann::ordered_json note = {{"build", kBuild},
+                                 {"command_line", options_.command_line},
+                                 {"daemon", fmt::format("{:016x}", identity_.id)},
+                                 {"cell", now_.cell->scene.name}};
+  note.update(note_of(*now_.cell));
+  options_.interventions->note("start", note);
 }
 
 std::vector<ReportSink*> Daemon::prepare(const std::shared_ptr<const Cell>& cell) {

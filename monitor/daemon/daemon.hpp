@@ -11,7 +11,10 @@
 #include <string>
 #include <vector>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "config/cell/cell.hpp"
+#include "monitor/app/intervention_log.hpp"
 #include "monitor/app/stop_signal.hpp"
 #include "monitor/daemon/cell_reload.hpp"
 #include "monitor/daemon/client_ports.hpp"
@@ -39,9 +42,11 @@ struct DaemonOptions {
   int fifo_priority = 0;        // of the tick thread; the other threads get one less; 0: ordinary
   std::filesystem::path record_file;  // empty: no recording
   RecordingOptions recording = {.overwrite = false};
-  std::optional<int> cpu;            // processor that the tick thread is pinned to
-  std::int64_t ahead_ns = 0;         // TickLoopOptions::ahead_ns; no effect with a partner
-  CommanderOptions commander;        // how commands and SIGHUP change the cell
+  InterventionLog* interventions = nullptr;  // outlives the daemon; null: there is none
+  std::vector<std::string> command_line;     // for it
+  std::optional<int> cpu;                    // processor that the tick thread is pinned to
+  std::int64_t ahead_ns = 0;                 // TickLoopOptions::ahead_ns; no effect with a partner
+  CommanderOptions commander;                // how commands and SIGHUP change the cell
   std::string partner;               // this daemon's name among partners; empty: it has none
   bool reload = false;               // read the cell again when its files have changed
   ReportWriter::OnHealth on_health;  // once per second; may be empty
@@ -119,7 +124,8 @@ class Daemon : private CellParts {
   void raise_priorities();
   void end_requests();
   [[nodiscard]] std::optional<std::string> followed() const;
-  bool note_change(const CommandResult& result);
+  bool note_change(const CommandResult& result, const nlohmann::ordered_json& asked);
+  void note_start() const;
   std::vector<ReportSink*> prepare(const std::shared_ptr<const Cell>& cell) override;
   void follow(const SceneInForce& since) noexcept override;
   void end(const LoopStatistics& figures) noexcept override;

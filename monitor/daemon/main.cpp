@@ -36,8 +36,9 @@ constexpr const char* kFooter = R"(Exit status:
   2  wrong usage
   3  the cell file is wrong, or it has changed since the scene of --keep-scene was kept
   4  DDS could not be joined, or another daemon publishes this cell already
-  5  the recording could not be begun (no folder, no permission, no regular file), or it is incomplete at the end
-     (deleted, moved or changed by another program, or a disk that is full or too slow); the ticks continue
+  5  the recording or the log of interventions could not be begun (no folder, no permission, no regular file), or is
+     incomplete at the end (deleted, moved or changed by another program, or a disk that is full or too slow); the ticks
+     continue
   7  a bit of the memory that no tick changes has flipped: the log names the table
 
 Example:
@@ -65,6 +66,7 @@ struct Arguments {
   std::filesystem::path metrics;     // a socket; empty: none
   std::filesystem::path histograms;  // a file; empty: none
   std::int64_t ahead_us = 0;
+  std::filesystem::path interventions;  // a file; empty: none
   DaemonOptions daemon;
 };
 
@@ -135,6 +137,10 @@ void add_options(CommandLine& line, Arguments& arguments) {
   });
   add_inputs(line, arguments);
   line.add({
+      {"--interventions", &arguments.interventions,
+       "Append to this file what people and programs do to the daemon, in lines of JSON that have "
+       "the hash of the line before: starts, ends, changes of the scene and of sources "
+       "('clearance-replay log' verifies them)"},
       {"--metrics", &arguments.metrics,
        "Answer GET /metrics on this Unix socket, in the text format of Prometheus"},
       {"--histograms", &arguments.histograms,
@@ -260,19 +266,25 @@ int run_daemon(const Cell& cell, Arguments& arguments, StopSignal& signal) {
     };
   }
   route_dds_log();
+  std::optional<InterventionLog> interventions;
+  if (!arguments.interventions.empty())
+    arguments.daemon.interventions = &interventions.emplace(arguments.interventions);
   Daemon daemon(cell, arguments.daemon);
   daemon.run(signal);
+  if (interventions) interventions->finish();
   write_text(stdout, daemon.summary(), Patience::kBrief);
   const bool is_written = arguments.histograms.empty() ||
                           write_file("clearanced", arguments.histograms, daemon.histograms());
-  if (daemon.recording_hangs()) {
+  if (daemon.recording_hangs() || (interventions && interventions->hangs())) {
     drain_log();
     std::_Exit(kIncomplete);
   }
-  const int status = daemon.damaged()                            ? kDamaged
-                     : daemon.yielded()                          ? kDdsFailed
-                     : daemon.recording_complete() && is_written ? kOk
-                                                                 : kIncomplete;
+  const bool is_complete =
+      daemon.recording_complete() && is_written && (!interventions || interventions->complete());
+  const int status = daemon.damaged()   ? kDamaged
+                     : daemon.yielded() ? kDdsFailed
+                     : is_complete      ? kOk
+                                        : kIncomplete;
   if (daemon.still_reads()) {
     drain_log();
     std::_Exit(status);
@@ -303,6 +315,7 @@ int run(int argc, char** argv, StopSignal& signal) {
   add_options(line, arguments);
   if (const auto done = parse(line, argc, argv)) return *done;
   arguments.daemon.ahead_ns = 1000 * arguments.ahead_us;
+  arguments.daemon.command_line.assign(argv, argv + argc);
   start_log("clearanced", arguments.log_level);
 
   if (arguments.check && arguments.cell.description_topic.empty()) {
@@ -335,7 +348,8 @@ int run(int argc, char** argv, StopSignal& signal) {
     return kUsage;
   }
   for (const std::filesystem::path& file : arguments.cell.files()) {
-    if (!output_is_not_an_input("clearanced", arguments.daemon.record_file, {file})) return kUsage;
+    for (const auto& output : {arguments.daemon.record_file, arguments.interventions})
+      if (!output_is_not_an_input("clearanced", output, {file})) return kUsage;
   }
   // The names of files by event have their time.
   const auto record_file =
@@ -355,7 +369,9 @@ int run(int argc, char** argv, StopSignal& signal) {
 
 // Maps an exception to its exit code in kFooter, the text of --help.
 ExitCode exit_code_of(const std::exception& error) {
-  return dynamic_cast<const RecordError*>(&error) != nullptr ? kIncomplete : dds_exit_code(error);
+  const bool is_of_file = dynamic_cast<const RecordError*>(&error) != nullptr ||
+                          dynamic_cast<const InterventionError*>(&error) != nullptr;
+  return is_of_file ? kIncomplete : dds_exit_code(error);
 }
 
 }  // namespace

@@ -48,6 +48,7 @@ inline constexpr LogLine<Text, Count, Text, Text> kCommandRefused{
     "command-refused", kWarn, "request {1} of '{0}' is refused ({2}): {3}"};
 inline constexpr LogLine<Text> kCommandsLeftOut{"commands-left-out", kWarn,
                                                 "{} about refused commands left out"};
+inline constexpr LogLine<Text, Count, Text> kNoted{"noted", kInfo, "'{}' notes in request {}: {}"};
 inline constexpr LogLine<Text, Count, Text, Text> kQuestionRefused{
     "question-refused", kWarn, "question {1} of '{0}' is refused ({2}): {3}"};
 inline constexpr LogLine<Text> kQuestionsLeftOut{"questions-left-out", kWarn,
@@ -71,7 +72,7 @@ inline constexpr LogLine<Text, Text> kDescriptionKept{
 inline constexpr LogLine<Text, Text> kRobotNote{"robot-note", kInfo, "robot '{}': {}"};
 inline constexpr LogLine<Text, Text> kSensorNote{"sensor-note", kInfo, "sensor '{}': {}"};
 
-// ---- The daemon's own recording
+// ---- The daemon's own recording and log of interventions
 
 inline constexpr LogLine<Text, Text> kRecordingRenamed{"recording-renamed", kWarn,
                                                        "{} exists: recording to {}"};
@@ -91,6 +92,19 @@ inline constexpr LogLine<Text, Text> kDiskTooSlow{
     "disk-too-slow", kError, "recording: the disk is too slow, {} and {} are missing so far"};
 inline constexpr LogLine<Text> kDiskHangs{
     "disk-hangs", kError, "recording: the disk takes nothing, {} is left unfinished"};
+inline constexpr LogLine<Text, Count, Text> kInterventions{
+    "interventions", kInfo, "the log of interventions {} has {} lines and ends with the hash {}"};
+inline constexpr LogLine<Text, Text> kInterventionsBroken{
+    "interventions-broken", kError,
+    "the log of interventions {} is not as it was written, which stays visible: {}"};
+inline constexpr LogLine<Text, Count> kInterventionsTorn{
+    "interventions-torn", kWarn,
+    "the log of interventions {} ended with {} bytes of a line that was not whole: the next line "
+    "keeps them"};
+inline constexpr LogLine<Text, Text> kInterventionsNotWritten{
+    "interventions-not-written", kError, "the log of interventions {} cannot be written: {}"};
+inline constexpr LogLine<Text> kInterventionsWritten{
+    "interventions-written", kInfo, "the log of interventions {} is written again"};
 
 // ---- Objects
 

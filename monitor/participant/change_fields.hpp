@@ -91,6 +91,8 @@ void visit_fields(const Visit& visit, Message& m, Of& c) {
     visit("reason", m.reason, c.reason, kMayBeEmpty);
   } else if constexpr (std::is_same_v<Change, WithdrawContact>) {
     visit("contact", m.contact, c.contact, kName);
+  } else if constexpr (std::is_same_v<Change, Note>) {
+    visit("text", m.text, c.text, kMayBeEmpty);
   } else {
     static_assert(std::is_same_v<Change, ReadCellAgain>, "a change without its list of fields");
     visit("file", m.file, c.file, kMayBeEmpty);
@@ -147,6 +149,7 @@ inline constexpr std::tuple kChangeKinds{
                              &ChangeUnion::attach_robot),
     change_kind<DetachRobot>(clearance_msg_CHANGE_DETACH_ROBOT, "detach_robot",
                              &ChangeUnion::detach_robot),
+    change_kind<Note>(clearance_msg_CHANGE_NOTE, "note", &ChangeUnion::note),
 };
 static_assert(std::tuple_size_v<decltype(kChangeKinds)> == std::variant_size_v<CellChange>);
 

@@ -14,7 +14,6 @@
 #include <utility>
 #include <vector>
 
-#include "monitor/files/build_info.hpp"
 #include "monitor/files/numbered_file.hpp"
 #include "monitor/wire/cdr.hpp"
 
@@ -150,7 +149,7 @@ void EventFiles::follow(std::uint32_t scene, std::int64_t log_ns) {
   written_scene_ = scene;
   const auto found = std::ranges::find(scenes_, scene, &KeptScene::number);
   static_cast<void>(writer_->attach(found->files));
-  writer_->catalogue(*found->catalogue, log_ns, kBuild);
+  writer_->catalogue(*found->catalogue, log_ns);
 }
 
 void EventFiles::write(TopicKind kind, std::int64_t log_ns, std::int64_t publish_ns,

@@ -1,13 +1,11 @@
 #include "monitor/recording/sink.hpp"
 
-#include "monitor/files/build_info.hpp"
-
 namespace clearance {
 
 std::string ContinuousFiles::begin_scene(const Cell& cell, const clearance_msg_Catalogue& catalogue,
                                          std::int64_t log_ns) {
   std::string missing = writer_.attach(cell);
-  writer_.catalogue(catalogue, log_ns, kBuild);
+  writer_.catalogue(catalogue, log_ns);
   return missing;
 }
 

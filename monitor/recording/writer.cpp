@@ -90,13 +90,15 @@ void RecordingWriter::write_former() {
 }
 
 // Metadata stands outside the messages, so that a reader finds the cell without decoding one.
-void RecordingWriter::describe(const clearance_msg_Catalogue& catalogue, const std::string& build) {
+void RecordingWriter::describe(const clearance_msg_Catalogue& catalogue) {
   note_former(catalogue);
   about_ = {{"version", CLEARANCE_VERSION},
             {"scene", catalogue.scene},
             {"scene_revision", std::to_string(catalogue.scene_revision)},
             {"cell", catalogue.cell_yaml}};
-  if (!build.empty()) about_["build"] = build;
+  for (const auto& [key, text] :
+       {std::pair{"build", catalogue.build}, std::pair{"cell_hash", catalogue.cell_hash}})
+    if (text != nullptr && *text != '\0') about_[key] = text;
   if (!attached_.cell_file.empty()) about_["cell_file"] = attached_.cell_file;
   if (options_.pairs_every > 1) about_["pairs_every"] = std::to_string(options_.pairs_every);
   if (options_.ticks_every > 1) about_["ticks_every"] = std::to_string(options_.ticks_every);
@@ -112,9 +114,8 @@ void RecordingWriter::describe(const clearance_msg_Catalogue& catalogue, const s
 }
 
 // The same content as metadata and as a message of the topic.
-void RecordingWriter::catalogue(const clearance_msg_Catalogue& catalogue, std::int64_t log_ns,
-                                const std::string& build) {
-  describe(catalogue, build);
+void RecordingWriter::catalogue(const clearance_msg_Catalogue& catalogue, std::int64_t log_ns) {
+  describe(catalogue);
   write(TopicKind::kCatalogue, log_ns, log_ns, catalogue);
 }
 

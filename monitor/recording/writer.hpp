@@ -22,12 +22,13 @@
 namespace clearance {
 
 // Name of the metadata record. Its keys are version, scene, scene_revision and cell (the YAML
-// text). Further keys stand only where they are known or needed. `build` is the build that made the
-// reports (monitor/files/build_info.hpp). `part` counts the files of one recording, from 1.
-// `pairs_every` stands where it is not 1. `cell_file` is the path of the cell, in a recording with
-// the files that it names (recorded_cell.hpp). `daemon` is the number of the daemon's run, in a
-// recording from DDS. `began_after` and `in_force_from` stand where the scene followed another one
-// (SceneInForce). The record is repeated for each scene, in front of its first report.
+// text). Further keys stand only where they are known or needed. `build` and `cell_hash` are those
+// of the catalogue: the build that made the reports, and the SHA-256 of the cell with its files.
+// `part` counts the files of one recording, from 1. `pairs_every` stands where it is not 1.
+// `cell_file` is the path of the cell, in a recording with the files that it names
+// (recorded_cell.hpp). `daemon` is the number of the daemon's run, in a recording from DDS.
+// `began_after` and `in_force_from` stand where the scene followed another one (SceneInForce). The
+// record is repeated for each scene, in front of its first report.
 inline constexpr std::string_view kRecordingMetadata = "clearance.recording";
 
 // Name of a metadata record at the head of a file that continues a recording: a scene that was in
@@ -57,12 +58,10 @@ class RecordingWriter {
   [[nodiscard]] std::string attach(AttachedFiles files);
 
   // The catalogue maps ids to names and is also kept as metadata. It belongs in front of all
-  // messages that use the ids. `build`: the build of the daemon that makes the reports; empty if
-  // not known.
-  void catalogue(const clearance_msg_Catalogue& catalogue, std::int64_t log_ns,
-                 const std::string& build = {});
+  // messages that use the ids.
+  void catalogue(const clearance_msg_Catalogue& catalogue, std::int64_t log_ns);
   // Only the metadata.
-  void describe(const clearance_msg_Catalogue& catalogue, const std::string& build = {});
+  void describe(const clearance_msg_Catalogue& catalogue);
 
   // `publish_ns`: the source's stamp where there is one. Topics that are left out are not written.
   void write(TopicKind kind, std::int64_t log_ns, std::int64_t publish_ns,

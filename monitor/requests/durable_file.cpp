@@ -10,19 +10,10 @@
 #include <cstdio>
 #include <cstring>
 
+#include "config/text/file_bytes.hpp"
+
 namespace clearance {
 namespace {
-
-// The kernel may take less than was given.
-bool write_all(int file, std::string_view bytes) {
-  while (!bytes.empty()) {
-    const ssize_t written = ::write(file, bytes.data(), bytes.size());
-    if (written < 0 && errno == EINTR) continue;
-    if (written <= 0) return false;
-    bytes.remove_prefix(static_cast<std::size_t>(written));
-  }
-  return true;
-}
 
 // The name of a file is kept with its folder.
 bool sync_folder(const std::filesystem::path& folder) {
@@ -56,7 +47,7 @@ std::string write_durably(const std::filesystem::path& file, std::string_view by
   const std::string beside = fmt::format("{}.{}.new", file.string(), ::getpid());
   constexpr int kMode = 0644;
   const int handle = ::open(beside.c_str(), O_WRONLY | O_CREAT | O_TRUNC | O_CLOEXEC, kMode);
-  bool done = handle >= 0 && write_all(handle, bytes) && ::fsync(handle) == 0;
+  bool done = handle >= 0 && write_bytes(handle, bytes) && ::fsync(handle) == 0;
   int error = errno;
   if (handle >= 0 && ::close(handle) != 0 && done) {
     error = errno;

@@ -10,6 +10,7 @@
 #include <string>
 #include <vector>
 
+#include "monitor/files/build_info.hpp"
 #include "monitor/wire/from_wire.hpp"
 #include "monitor/wire/to_wire.hpp"
 
@@ -202,6 +203,8 @@ Sample<clearance_msg_Catalogue> make_catalogue(const Cell& cell, const SceneInFo
   sample->scene_revision = scene.revision;
   sample->rate_hz = scene.rate_hz;
   sample->cell_yaml = duplicate(cell.yaml);
+  sample->cell_hash = duplicate(cell.hash);
+  sample->build = duplicate(kBuild);
   sample->began_after = since.began_after;
   sample->in_force_from = since.from;
   reserve_sequence(sample->objects, scene.objects.size());

@@ -38,6 +38,7 @@ KEYS = {
     "libncurses-dev": "libncurses-dev",
     "libspdlog-dev": "spdlog",
     "libsqlite3-dev": "libsqlite3-dev",
+    "libssl-dev": "libssl-dev",
     "libsystemd-dev": "libsystemd-dev",
     "libtinyxml2-dev": "tinyxml2",
     "libyaml-cpp-dev": "yaml-cpp",

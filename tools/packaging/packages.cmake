@@ -60,7 +60,7 @@ set(CPACK_DEBIAN_VIEW_PACKAGE_RECOMMENDS "clearance")
 set(CPACK_DEBIAN_VIEW_PACKAGE_SUGGESTS "chromium")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SHLIBDEPS OFF) # static libraries
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_DEPENDS
-    "cyclonedds-dev, libassimp-dev, libeigen3-dev, libfmt-dev, libgmp-dev, libhwy-dev, liblz4-dev, liblzma-dev, libspdlog-dev, libsqlite3-dev, libtinyxml2-dev, libyaml-cpp-dev, libzstd-dev, zlib1g-dev")
+    "cyclonedds-dev, libassimp-dev, libeigen3-dev, libfmt-dev, libgmp-dev, libhwy-dev, liblz4-dev, liblzma-dev, libspdlog-dev, libsqlite3-dev, libssl-dev, libtinyxml2-dev, libyaml-cpp-dev, libzstd-dev, zlib1g-dev")
 set(CPACK_DEBIAN_DEVELOPMENT_PACKAGE_SUGGESTS "clearance")
 # An extension belongs to one version of Python.
 set(CPACK_DEBIAN_PYTHON_PACKAGE_DEPENDS "python3-numpy")

@@ -1,4 +1,4 @@
-// The arguments of clearance-replay's two subcommands.
+// The arguments of clearance-replay's subcommands.
 #pragma once
 
 #include <cstdint>
@@ -64,9 +64,15 @@ struct CompareArguments {
   std::string first, second;
 };
 
+struct LogArguments {
+  std::string file;
+  std::string holds;  // a hash; empty: none
+};
+
 // All return the exit code.
 [[nodiscard]] int publish_recording(const PublishArguments& arguments, StopSignal& stop);
 [[nodiscard]] int check_recording(const CheckArguments& arguments, StopSignal& stop);
 [[nodiscard]] int compare_two_recordings(const CompareArguments& arguments, StopSignal& stop);
+[[nodiscard]] int verify_log(const LogArguments& arguments);
 
 }  // namespace clearance

@@ -70,8 +70,9 @@ TEST(ChangeReader, ReadsEveryKindInTheOrderOfTheText) {
 - withdraw_contact: {contact: grip}
 - attach_robot: {robot: gripper, to: flange, pose: {xyz: [0, 0, 0.1]}, far: true}
 - detach_robot: {robot: gripper, joints: {left: 0.01}, absent: true}
+- note: {text: it was looked into}
 )");
-  ASSERT_EQ(changes.size(), 19u);
+  ASSERT_EQ(changes.size(), 20u);
   EXPECT_EQ(std::get<AddObject>(changes[0]).yaml, "{name: box, fixed: true, sphere: {radius: 5}}");
   const auto& bin = std::get<AddFromTemplate>(changes[1]);
   EXPECT_EQ(bin.template_name, "bin");
@@ -115,6 +116,7 @@ TEST(ChangeReader, ReadsEveryKindInTheOrderOfTheText) {
   ASSERT_EQ(detach_robot.joints.size(), 1u);
   EXPECT_EQ(detach_robot.joints[0].position, 0.01);
   EXPECT_TRUE(detach_robot.absent && !detach_robot.powered);
+  EXPECT_EQ(std::get<Note>(changes[19]).text, "it was looked into");
 }
 
 // The block of YAML in idl/COMMANDS.md, which names the file of another cell.

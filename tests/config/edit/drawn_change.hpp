@@ -181,6 +181,7 @@ class DrawnChange {
     return WithdrawContact{one_of(names_.contacts)};
   }
   CellChange make(std::type_identity<ReplaceCell>) { return ReplaceCell{one_of(names_.cells)}; }
+  CellChange make(std::type_identity<Note>) { return Note{one_in(4) ? "" : "drawn"}; }
   CellChange make(std::type_identity<ReadCellAgain>) { return ReadCellAgain{one_of(names_.files)}; }
 
   Random& random_;

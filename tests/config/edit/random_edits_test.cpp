@@ -43,7 +43,7 @@ TEST_F(CellEdits, RandomListsGiveTheCellOfTheirText) {
       .length = 0.001};
   test::DrawnChange draw(random, names);
   int compared = 0;
-  for (int round = 0; round < 24; ++round) {
+  for (int round = 0; round < 40; ++round) {
     editor_.emplace(open(text));
     CellEditor whole = open(text);
     names.attached.clear();

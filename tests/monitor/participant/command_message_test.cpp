@@ -56,7 +56,8 @@ std::vector<CellChange> every_change() {
           SetPair{"a", "b", SetPair::Rule::kNoException},
           AllowContact{"grip", "part", "finger", 0.001, {0.01, 5, 6, 7}, "planner", "held"},
           AllowContact{"grip", "part", "finger", 0.001, {}, "planner", "held"},
-          WithdrawContact{"grip"}};
+          WithdrawContact{"grip"},
+          Note{"seen by the shift lead"}};
 }
 
 Command every_command() {
@@ -120,15 +121,17 @@ TEST(CommandMessage, KeepsEveryFieldOfEveryChange) {
   EXPECT_EQ(detach.joints[1].position, -0.02);
   EXPECT_TRUE(detach.powered && detach.absent);
   EXPECT_FALSE(std::get<AttachRobot>(read.changes[11]).carrier_from_root);
-  const std::size_t contact = read.changes.size() - 3;
+  const std::size_t contact = read.changes.size() - 4;
   EXPECT_EQ(std::get<AllowContact>(read.changes[contact]).end, (ContactEnd{0.01, 5, 6, 7}));
   EXPECT_EQ(std::get<AllowContact>(read.changes[contact + 1]).end, ContactEnd{});
+  EXPECT_EQ(std::get<Note>(read.changes.back()).text, "seen by the shift lead");
   EXPECT_EQ(wire_bytes(read), wire_bytes(command));
 }
 
 TEST(CommandMessage, DiffersInItsBytesForEachField) {
   const std::vector<std::pair<CellChange, CellChange>> pairs = {
       {SetMaxSpeed{"a", 1.0}, SetMaxSpeed{"a", 2.0}},
+      {Note{"a"}, Note{"b"}},
       {SetAgeLimit{"a", 1}, SetAgeLimit{"a", 2}},
       {SetSource{"a", "s"}, SetSource{"a", "t"}},
       {SetZoneThresholds{"z", 1, 2}, SetZoneThresholds{"z", 1, 3}},

@@ -199,7 +199,7 @@ class OtherBuild : public OfflineReplayTest {
                      const std::function<Other(const clearance_msg_ZoneState&)>& converted) {
     const std::vector<Kept> messages = messages_of(run);
     RecordingWriter writer(run, cell.topics, {.left_out = {TopicKind::kZones}});
-    writer.describe(*decoded<clearance_msg_Catalogue>(messages.front()), "another build");
+    writer.describe(*catalogue_of_build(messages.front(), "another build"));
     const auto zones = writer.add_channel({"clearance::msg::ZoneState", "omgidl", schema}, "zones");
     for (const Kept& message : messages) {
       if (message.kind == TopicKind::kZones) {

@@ -107,12 +107,21 @@ Sample<T> decoded(const Kept& message) {
   return sample;
 }
 
+// The same catalogue of a daemon of another build.
+inline Sample<clearance_msg_Catalogue> catalogue_of_build(const Kept& message,
+                                                          const std::string& build) {
+  auto catalogue = decoded<clearance_msg_Catalogue>(message);
+  dds_string_free(catalogue->build);
+  catalogue->build = dds_string_dup(build.c_str());
+  return catalogue;
+}
+
 // `build` names the build that made the reports; if it is empty, none is named. The first message
 // is then a catalogue.
 inline void write_messages(const std::filesystem::path& file, const std::vector<Kept>& messages,
                            const std::string& build = {}) {
   RecordingWriter writer(file, Topics{});
-  if (!build.empty()) writer.describe(*decoded<clearance_msg_Catalogue>(messages.front()), build);
+  if (!build.empty()) writer.describe(*catalogue_of_build(messages.front(), build));
   for (const Kept& message : messages) {
     writer.write(message.kind, message.log_ns, message.publish_ns,
                  std::span<const std::byte>(message.cdr));

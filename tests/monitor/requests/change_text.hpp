@@ -84,6 +84,7 @@ struct ChangeText {
     return row("WithdrawContact", c.contact);
   }
   std::string operator()(const ReplaceCell& c) const { return "ReplaceCell\n" + c.yaml; }
+  std::string operator()(const Note& c) const { return row("Note", c.text); }
   std::string operator()(const ReadCellAgain& c) const { return row("ReadCellAgain", c.file); }
 };
 

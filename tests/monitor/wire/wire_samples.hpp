@@ -101,6 +101,8 @@ inline void fill(std::mt19937_64& random, Sample<clearance_msg_Catalogue>& catal
   catalogue->scene_revision = random();
   catalogue->rate_hz = any_double(random);
   catalogue->cell_yaml = any_text(random);
+  catalogue->cell_hash = any_text(random);
+  catalogue->build = any_text(random);
   reserve_sequence(catalogue->objects, random() % 9);
   for (std::uint32_t i = 0; i < catalogue->objects._maximum; ++i) {
     clearance_msg_CatalogueObject& object =

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "monitor/files/build_info.hpp"
 #include "monitor/wire/cdr.hpp"
 #include "monitor/wire/convert.hpp"
 #include "monitor/wire/cyclone_private.hpp"
@@ -236,7 +237,9 @@ TEST(Convert, CatalogueHasEveryFieldOfTheScene) {
   scene.zones.push_back({"slow", "people", "arms", 0.5, 0.6, {1}});
   for (const char* joint : {"shoulder", "elbow"}) scene.variables.emplace_back().name = joint;
   const Sample<clearance_msg_Catalogue> catalogue =
-      make_catalogue({.scene = scene, .yaml = "name: small\n"});
+      make_catalogue({.scene = scene, .yaml = "name: small\n", .hash = "ab12"});
+  EXPECT_STREQ("ab12", catalogue->cell_hash);
+  EXPECT_STREQ(kBuild, catalogue->build);
   EXPECT_STREQ("small", catalogue->scene);
   EXPECT_EQ(77u, catalogue->scene_revision);
   EXPECT_EQ(250.0, catalogue->rate_hz);
