@@ -85,6 +85,8 @@ TEST(LargestSpeed, IsTheOneOfClosedForm) {
   const Separation terms = braking(4.0, 1.0, 0.1);
   const double expected = 4.0 * (-0.5 + std::sqrt(0.25 + 0.5 * 0.84));
   EXPECT_NEAR(largest_speed(terms, {.human_speed = 1.6}, 1.0), expected, 1e-12);
+  // The path of a robot that brakes at once, beside a person who stands: v^2 / 8 = 0.5.
+  EXPECT_NEAR(largest_speed(braking(4.0, 1.0, 0.0), {.human_speed = 0.0}, 0.5), 2.0, 1e-12);
 }
 
 TEST(LargestSpeed, IsNoneWhereAStandingRobotIsTooNear) {
