@@ -32,12 +32,12 @@ A motion is a JSON object:
   held        {"JOINT": position} of joints that stay; joints that mimic others follow
   joints_of_others  {"JOINT": position, or [position, age in s]} of robots that do nothing here: they stay within
               their velocity limits x time, and within their limits; with "others": "still" where they are
-  poses       {"OBJECT": [x, y, z, qw, qx, qy, qz]} of objects that are neither fixed nor part of a robot;
-              such an object comes nearer by its max_speed x time, or with "others": "still" not at all
+  poses       {"OBJECT": {"xyz": [x, y, z], "quaternion": [x, y, z, w]}} of objects that are neither fixed nor part
+              of a robot; one of the two may be left out, as in a cell. Such an object comes nearer by its max_speed x time, or with "others": "still" not at all
   turn_speeds {"OBJECT": rad/s} of such objects on which robots stand; without it they may rotate by any angle
   margins     m, instead of --margin; or {"between": ["A", "B"], "m": 0.05}, {"zone": "Z", "m": 0.05} for some pairs
   beside      [{joints, times_s, positions, velocities}] of other robots, which rest before and after
-  moving      {"OBJECT": {"times_s": [...], "poses": [[x, y, z, qw, qx, qy, qz], ...]}}: stated motions of objects
+  moving      {"OBJECT": {"times_s": [...], "poses": [POSE, ...]}}: stated motions of objects
   payloads    [{"name", "link", "pose", "touch": [...]}]: what links carry, an object of the cell or a new one with
               "box": [x, y, z], "sphere": radius, "cylinder": [radius, length] or "vertices": [[x, y, z], ...]
   contacts    [{"pair": ["A", "B"], "depth": m, "until": s, "distance": m}]: contacts that are meant, down to this depth,

@@ -36,8 +36,9 @@ Reads one case a line and writes one answer a line, in the same order. A case is
                Curved: {"ellipsoid": [rx, ry, rz]}, around the z-axis {"cylinder": {"radius": r, "half_length": h}},
                {"cone": {"radius": r, "half_length": h}} with the apex at z = h, {"truncated_cone": {"lower_radius",
                "upper_radius", "half_length"}}, each with a "radius" beside it if wanted. Several bodies in one frame:
-               {"parts": [{"pose": [x, y, z, qw, qx, qy, qz], ...}, ...]}. --check leaves these lines out.
-  pose_a, pose_b   [x, y, z, qw, qx, qy, qz]: a point p of the body is at (x, y, z) + R p in the world
+               {"parts": [{"pose": {"xyz": ..., "quaternion": ...}, ...}, ...]}. --check leaves these lines out.
+  pose_a, pose_b   {"xyz": [x, y, z], "quaternion": [x, y, z, w]}, as in a cell, one of them or both: a point p of
+               the body is at (x, y, z) + R p in the world
   poses        instead of these: [[pose_a, pose_b], ...], a motion; each query starts where the last ended
 An answer has id; distance, lower, upper (0 where the bodies overlap); witness_a, witness_b: closest points, where
 the bodies overlap a point of both; penetration, penetration_lower, penetration_upper: the length of the shortest
@@ -61,7 +62,7 @@ Example: two unit cubes, faces 0.5 m apart
   echo '{"id": "cubes",
          "a": {"halfspaces": [[1,0,0,0.5],[-1,0,0,0.5],[0,1,0,0.5],[0,-1,0,0.5],[0,0,1,0.5],[0,0,-1,0.5]]},
          "b": {"halfspaces": [[1,0,0,0.5],[-1,0,0,0.5],[0,1,0,0.5],[0,-1,0,0.5],[0,0,1,0.5],[0,0,-1,0.5]]},
-         "pose_a": [0,0,0,1,0,0,0], "pose_b": [1.5,0,0,1,0,0,0]}' | tr -d '\n' |
+         "pose_a": {"xyz": [0,0,0]}, "pose_b": {"xyz": [1.5,0,0]}}' | tr -d '\n' |
     clearance-distance --cases - --out -)";
 
 struct Options {

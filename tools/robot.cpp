@@ -18,6 +18,7 @@
 #include <variant>
 #include <vector>
 
+#include "config/text/sentences.hpp"
 #include "monitor/app/cell_arguments.hpp"
 #include "monitor/app/log.hpp"
 #include "monitor/app/log_line.hpp"
@@ -209,6 +210,7 @@ std::string inputs_of(const SimulatedRobot& robot) {
   add(robot.objects(), "pose");
   add(robot.joints(), "joint state");
   add(robot.frames(), "transform");
+  add(robot.people() ? robot.people()->size() : 0, "person");
   return all;
 }
 
@@ -307,6 +309,12 @@ int run_robot(const Cell& cell, const Arguments& arguments, JointMotion motion,
   log_text(LogLevel::kInfo,
            fmt::format("source '{}' sends {} at {} Hz on {}", arguments.robot.source,
                        inputs_of(robot), arguments.rate_hz, connection.where()));
+  if (robot.people() && !robot.people()->left_out().empty()) {
+    log_text(LogLevel::kWarn,
+             fmt::format("nothing is sent of {}: no mover of the simulation has the frame body_ID "
+                         "(idl/PEOPLE.md); `example_arm people` plays a motion",
+                         one_of(robot.people()->left_out())));
+  }
   Cameras cameras(cell, connection, arguments, true_motion(cell, arguments, motion), time);
 
   std::atomic<bool> stop{false}, done{false};

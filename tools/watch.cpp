@@ -33,7 +33,7 @@ Exit status:
 
 Examples:
   clearance-watch --partition lab --seconds 10
-  clearance-watch --cell cell.yaml)";
+  clearance-watch cell.yaml)";
 
 struct Arguments {
   double seconds = 0.0;
@@ -44,12 +44,12 @@ struct Arguments {
 
 void add_options(CommandLine& line, Arguments& arguments) {
   line.add({
+      {"CELL", &arguments.cell, "A cell file, which names domain, partition, interface and topics"},
       {"--seconds", &arguments.seconds, "Stop after this time; 0: run until Ctrl-C",
        number_from_zero()},
       {"--plain", &arguments.plain,
        "Print one line per second instead of a full screen; the default without a terminal"},
   });
-  line.add({topics_option(arguments.cell)});
   arguments.dds.add_to(line);
 }
 

@@ -172,9 +172,11 @@ void RobotReader::allow(const RobotKeys& keys, const RobotDescription& descripti
     objects[name] = link.object;
   }
   note_visuals(description.robot, robot.notes);
+  std::vector<std::string> expected;  // a person has no SRDF: this is no news
+  std::vector<std::string>& notes = keys.person_node != nullptr ? expected : robot.notes;
   const std::vector<SrdfDisabled> pairs =
       description.srdf ? exceptions_of(*description.srdf, shaped, fixed, robot.notes)
-                       : neighbours_of(description.robot, shaped, fixed, robot.notes);
+                       : neighbours_of(description.robot, shaped, fixed, notes);
   for (const SrdfDisabled& pair : pairs) {
     may_touch.emplace_back(pair_key(objects[pair.link_a], objects[pair.link_b]),
                            keys.name_node->line);

@@ -14,4 +14,8 @@ namespace clearance {
 [[nodiscard]] std::vector<std::uint32_t> pairs_between(const Scene& scene, const std::string& a,
                                                        const std::string& b);
 
+// Why there is none: which name the cell does not have, or that no rule watches such a pair.
+[[nodiscard]] std::string why_no_pairs_between(const Scene& scene, const std::string& a,
+                                               const std::string& b);
+
 }  // namespace clearance

@@ -16,7 +16,7 @@ constexpr double kBetweenRobots = 0.6;
 constexpr double kTableTop = 0.75, kTableThickness = 0.05;
 constexpr double kTableBack = -0.4, kTableFront = 0.8, kTableBeside = 0.5;
 constexpr double kAboveTable = 0.05;  // the lowest moving link, where the zone `stop` is clear
-constexpr double kMachineAway = 0.6, kPersonAway = 2.0;
+constexpr double kMachineAway = 0.2, kPersonAway = 2.0;  // from reach, and from the back
 constexpr double kCameraBeside = 2.0, kCameraHigh = 2.2;
 
 std::string quoted(const std::string& text) {
@@ -60,7 +60,7 @@ class StarterWriter {
 
   const StarterOptions& options_;
   std::vector<double> y_;  // of the bases
-  double back_ = 0.0, front_ = 0.0;
+  double back_ = 0.0, reach_ = 0.0;
   std::string text_;
 };
 
@@ -71,7 +71,7 @@ void StarterWriter::place() {
     y_.push_back(y_.empty() ? 0.0 : std::ceil(1e2 * (next - robot.low.y())) / 1e2);
     next = y_.back() + robot.high.y() + kBetweenRobots;
     back_ = std::min(back_, robot.low.x());
-    front_ = std::max(front_, robot.high.x());
+    reach_ = std::max(reach_, robot.reach);
   }
   const double middle = 0.5 * (y_.front() + y_.back());
   for (double& y : y_) y -= middle;
@@ -112,8 +112,8 @@ void StarterWriter::write_table() {
 }
 
 void StarterWriter::write_machine() {
-  const double x = std::ceil(1e2 * (front_ + kMachineAway)) / 1e2;
-  line("  # The housing of a machine in front of the robots. Measure it, and where it stands.");
+  const double x = std::ceil(1e2 * (reach_ + kMachineAway)) / 1e2;
+  line("  # The housing of a machine, here out of reach. Measure it, and where it stands.");
   line("  - name: machine");
   line("    groups: [surroundings]");
   line("    fixed: true");
@@ -124,6 +124,8 @@ void StarterWriter::write_machine() {
       "poses");
   line(
       "  # arrive on the topic clearance/poses. If it is out of reach while open: `absent: true`.");
+  line("  # One with hinges: in place of it, a robot of one joint under `robots`, its `base` with");
+  line("  # `on: machine`, and its `groups: [surroundings]`.");
   line("  - name: door");
   line("    groups: [surroundings]");
   line("    fixed: true");

@@ -22,6 +22,7 @@ struct StarterRobot {
   std::vector<std::pair<std::string, std::filesystem::path>> packages;
   std::vector<JointVariable> variables;
   Vec3 low = Vec3::Zero(), high = Vec3::Zero();  // m: a box around all links
+  double reach = 0.0;                            // m: along x, in any posture
   // Links that turn about the vertical near their base: their height never changes.
   std::vector<std::string> turning;
   double lowest = 0.0;      // m: of all other links that move

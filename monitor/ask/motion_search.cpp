@@ -85,9 +85,7 @@ std::optional<std::string> MotionSearch::fault(const Question& question) const {
   }
   for (const MarginBetween& of : question.margins_between) {
     if (auto fault = wrong(of.margin)) return fault;
-    if (!pairs_between(scene_, of.a, of.b).empty()) continue;
-    return of.b.empty() ? "the cell has no zone \"" + of.a + "\" with a watched pair"
-                        : "the cell watches no pair between \"" + of.a + "\" and \"" + of.b + "\"";
+    if (pairs_between(scene_, of.a, of.b).empty()) return why_no_pairs_between(scene_, of.a, of.b);
   }
   if (!question.profile) return std::nullopt;
   const ProfileRequest& profile = *question.profile;

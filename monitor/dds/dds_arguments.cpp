@@ -28,10 +28,6 @@ void DdsArguments::add_to(CommandLine& line, bool has_cell) {
   });
 }
 
-Option topics_option(std::filesystem::path& cell) {
-  return {"--cell", &cell, "A cell file, which names domain, partition, interface and topics"};
-}
-
 std::optional<Cell> cell_of_topics(const std::filesystem::path& cell) {
   if (cell.empty()) return Cell{};
   return cell_or_errors(read_cell(cell, told_on_stderr()));

@@ -38,10 +38,8 @@ struct DdsArguments {
   [[nodiscard]] DdsOptions resolve() const { return resolve(Cell{}); }
 };
 
-// "--cell" of a program that needs no more of a cell than its network and its topics.
-[[nodiscard]] Option topics_option(std::filesystem::path& cell);
-// The cell of that option; without one, the default cell. Nothing, after errors on stderr, if the
-// cell cannot be read.
+// The cell of a program that needs no more of it than its network and its topics; without a file,
+// the default cell. Nothing, after errors on stderr, if the cell cannot be read.
 [[nodiscard]] std::optional<Cell> cell_of_topics(const std::filesystem::path& cell);
 
 // The exit code of a DDS program that ended with this exception.

@@ -274,14 +274,10 @@ inline constexpr LogLine<double> kClockStepped{
 // ---- Zones
 
 inline constexpr LogLine<Text, Count> kZoneLeft{"zone-left", kInfo, "zone '{}' left at cycle {}"};
-inline constexpr LogLine<Text, Count, Text, Text, double, double> kZoneNear{
-    "zone-near", kInfo,
-    "zone '{}' entered at cycle {} {}: {}, at least {:.3f} m clear, {:.3f} m since the tick "
-    "before"};
-inline constexpr LogLine<Text, Count, Text, Text, double, double> kZoneLate{
-    "zone-late", kInfo,
-    "zone '{}' entered at cycle {} because {}: {}, at least {:.3f} m clear, {:.3f} m since the "
-    "tick before"};
+inline constexpr LogLine<Text, Count, Text, Text, Text> kZoneNear{
+    "zone-near", kInfo, "zone '{}' entered at cycle {} {}: {}, {}"};
+inline constexpr LogLine<Text, Count, Text, Text, Text> kZoneLate{
+    "zone-late", kInfo, "zone '{}' entered at cycle {} because {}: {}, {}"};
 inline constexpr LogLine<Text, Count, Text, Text> kZoneUnknown{
     "zone-unknown", kInfo, "zone '{}' entered at cycle {} because {}: {} unknown"};
 inline constexpr LogLine<Text, Count, Text, Text> kZoneContradicted{

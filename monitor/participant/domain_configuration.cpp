@@ -196,26 +196,22 @@ std::string where_joined(const DdsOptions& options, const Domain& domain) {
                      own_settings().empty() ? "" : ", then CYCLONEDDS_URI");
 }
 
-// The proposed settings leave out datagram sizes, which clients need not share.
+// The proposed settings leave out datagram sizes, which clients need not share. Our own programs
+// have the settings of an interface by its name.
 std::string how_to_reach(const DdsOptions& options, std::uint32_t domain) {
-  const std::string on = fmt::format(
-      "in domain {} (ROS_DOMAIN_ID){}", domain,
-      options.partition.empty()
-          ? ""
-          : fmt::format(", in partition {}, which ROS 2 nodes never are", options.partition));
-  if (const std::string who = who_reaches(options); !who.empty())
-    return fmt::format("{}, {}", who, on);
+  const std::string on = fmt::format("in domain {} (ROS_DOMAIN_ID)", domain);
+  const std::string who = who_reaches(options);
+  if (!options.partition.empty()) {
+    return fmt::format("{} {}, in partition {}; ROS 2 nodes, which are in none, do not reach it",
+                       who.empty() ? "programs with the same interface reach it" : who + ",", on,
+                       options.partition);
+  }
+  if (!who.empty()) return fmt::format("{}, {}", who, on);
   const Network network = network_of(options);
-  // Cyclone refuses a card that is named twice, and Humble names lo for ROS_LOCALHOST_ONLY.
-  const bool is_met_on_lo = interface_of(options).name == "lo" && options.partition.empty();
   return fmt::format(
       "other programs reach it with CYCLONEDDS_URI='<CycloneDDS><Domain>{}{}</Domain></CycloneDDS>'"
-      ", {}{}",
-      element("General", general_xml(network)), element("Discovery", discovery_xml(network)), on,
-      is_met_on_lo ? "; a node of ROS 2 Humble with ROS_LOCALHOST_ONLY=1 reaches it without that "
-                     "variable, and ends if both are set. A daemon with --interface ros meets "
-                     "nodes with neither"
-                   : "");
+      ", {}",
+      element("General", general_xml(network)), element("Discovery", discovery_xml(network)), on);
 }
 
 }  // namespace clearance

@@ -1,5 +1,7 @@
 #include "monitor/publish/zone_log.hpp"
 
+#include <fmt/format.h>
+
 #include <string>
 
 #include "monitor/app/log_line.hpp"
@@ -12,6 +14,15 @@ namespace {
 // The most zones whose flickering is told at once; the others are counted together.
 constexpr std::uint64_t kZonesAtOnce = 5;
 
+// The second figure is told if the pair may have been nearer between the two ticks.
+std::string clearance_text(const ZoneReport& zone) {
+  const std::string now = fmt::format("{:.3f}", zone.clearance);
+  const std::string between = fmt::format("{:.3f}", zone.swept_clearance);
+  const std::string text = fmt::format("at least {} m clear", now);
+  if (now == between) return text;
+  return fmt::format("{}, and at least {} m at every instant since the tick before", text, between);
+}
+
 // Logs that a zone was entered, and why, or that it was left. Only near and late zones have bounds.
 void log_zone(const Scene& scene, std::uint32_t index, const ZoneReport& zone,
               std::uint64_t cycle) {
@@ -21,8 +32,7 @@ void log_zone(const Scene& scene, std::uint32_t index, const ZoneReport& zone,
   const std::string cause = cause_text(scene, zone);
   switch (zone.cause) {
     case ZoneCause::kLate:
-      return log_line(lines::kZoneLate, name, cycle, cause, pair, zone.clearance,
-                      zone.swept_clearance);
+      return log_line(lines::kZoneLate, name, cycle, cause, pair, clearance_text(zone));
     case ZoneCause::kUnknown:
       return log_line(lines::kZoneUnknown, name, cycle, cause, pair);
     case ZoneCause::kContradicted:
@@ -34,8 +44,7 @@ void log_zone(const Scene& scene, std::uint32_t index, const ZoneReport& zone,
     case ZoneCause::kContactTooLate:
       return log_line(lines::kZoneContactTooLate, name, cycle, cause, pair);
     default:
-      return log_line(lines::kZoneNear, name, cycle, cause, pair, zone.clearance,
-                      zone.swept_clearance);
+      return log_line(lines::kZoneNear, name, cycle, cause, pair, clearance_text(zone));
   }
 }
 

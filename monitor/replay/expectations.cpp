@@ -25,13 +25,6 @@ constexpr std::int64_t kNotYet = std::numeric_limits<std::int64_t>::max();
 // A recording ends at most this long after the driver of a robot, ns.
 constexpr std::int64_t kMostLateEnd = 1'000'000'000;
 
-// For a message about a zone that does not exist.
-std::string zone_names(const Scene& scene) {
-  std::vector<std::string> names;
-  for (const Zone& zone : scene.zones) names.push_back(zone.name);
-  return names.empty() ? "it has none" : fmt::format("its zones are {}", one_of(names));
-}
-
 std::optional<std::uint32_t> zone_index(const Scene& scene, const std::string& name) {
   const auto found = std::ranges::find(scene.zones, name, &Zone::name);
   if (found == scene.zones.end()) return std::nullopt;
@@ -58,6 +51,7 @@ Expectations::Expectations(const Scene& scene, const Expected& expected)
   for (const std::string& name : expected.no_zone) expectations_.emplace_back().zone = name;
   for (Expectation& expectation : expectations_) {
     rest_on(expectation);
+    expectation.outcome.expectation = subject_of(expectation.distance, expectation.zone);
     if (error_.empty()) error_ = unknown_name(expectation);
   }
 }
@@ -94,19 +88,13 @@ void Expectations::rest_on(Expectation& expectation) {
 std::string Expectations::unknown_name(const Expectation& expectation) const {
   if (!expectation.distance) {
     if (expectation.index) return {};
-    return fmt::format("the cell has no zone '{}'; {}", expectation.zone, zone_names(*scene_));
+    return why_no_pairs_between(*scene_, expectation.zone, "");
   }
   if (!expectation.pairs.empty()) return {};
   if (expectation.all_pairs)
     return "no pair is left to expect a distance of; expected a smaller distance, or pairs of two "
            "objects or groups (--between)";
-  if (expectation.distance->b.empty())
-    return fmt::format("the cell has no zone '{}'; {}", expectation.distance->a,
-                       zone_names(*scene_));
-  return fmt::format(
-      "the cell watches no pair between '{}' and '{}'; expected two objects or groups that a rule "
-      "under 'pairs:' names",
-      expectation.distance->a, expectation.distance->b);
+  return why_no_pairs_between(*scene_, expectation.distance->a, expectation.distance->b);
 }
 
 void Expectations::change(const Scene& scene) {
@@ -198,7 +186,9 @@ std::vector<Expectations::Broken> Expectations::check(const Report& report, cons
     }
     if (!expectation.late_then.empty() && !longest_late(expectation.late_then))
       end_lateness(expectation, "");
-    if (!judge || expectation.broken) continue;
+    if (!judge) continue;
+    note_least(expectation, {report, monitor});
+    if (expectation.broken) continue;
     if (!expectation.begun) ++expectation.before;
     if (expectation.begun) ++expectation.judged;
     const bool late = is_late(expectation);
@@ -206,7 +196,7 @@ std::vector<Expectations::Broken> Expectations::check(const Report& report, cons
     Found why = expectation.begun ? found(expectation, {report, monitor})
                                   : found_certain(expectation, {report, monitor});
     if (!why) continue;
-    Broken what{report.cycle, report.now_ns, std::move(why->what)};
+    Broken what{report.cycle, report.now_ns, std::move(why->what), expectation.outcome.expectation};
     if (!why->certain) {
       doubt(expectation, std::move(what));
       continue;
@@ -275,7 +265,8 @@ std::vector<Expectations::Broken> Expectations::finish(const Monitor& monitor,
     if (expectation.broken) continue;
     finish_lateness(expectation, last_ns);
     const auto allowed = allow_unknown_ * static_cast<double>(expectation.judged);
-    const std::string subject = subject_of(expectation.distance, expectation.zone);
+    const std::string& subject = expectation.outcome.expectation;
+    const std::size_t before = broken.size();
     if (static_cast<double>(expectation.doubtful) > allowed) {
       Broken& what = broken.emplace_back(std::move(*expectation.first_doubt));
       what.what += fmt::format("; so in {} of {} judged", expectation.doubtful,
@@ -295,6 +286,7 @@ std::vector<Expectations::Broken> Expectations::finish(const Monitor& monitor,
     } else {
       note_ticks(expectation);
     }
+    if (broken.size() > before) broken.back().expectation = subject;
   }
   return broken;
 }
@@ -307,8 +299,7 @@ std::optional<Expectations::Broken> Expectations::never_known(const Expectation&
     std::string what = fmt::format(
         "{}: the pairs of '{}' could not be judged, since a change brought it {:.3f} s before the "
         "end and the recording does not tell where it is",
-        subject_of(expectation.distance, expectation.zone), scene_->objects[i].name,
-        seconds(awaited_ns));
+        expectation.outcome.expectation, scene_->objects[i].name, seconds(awaited_ns));
     if (awaited_ns > kMostLateEnd) return Broken{0, last_ns, std::move(what)};
     notes_.push_back(std::move(what));
   }
@@ -316,7 +307,7 @@ std::optional<Expectations::Broken> Expectations::never_known(const Expectation&
 }
 
 void Expectations::note_ticks(const Expectation& expectation) {
-  const std::string subject = subject_of(expectation.distance, expectation.zone);
+  const std::string& subject = expectation.outcome.expectation;
   const std::uint64_t ticks = expectation.judged + expectation.before;
   if (expectation.before > 0) {
     notes_.push_back(fmt::format(
@@ -328,6 +319,12 @@ void Expectations::note_ticks(const Expectation& expectation) {
     notes_.push_back(fmt::format("{}: unknown in {} of {} judged, as allowed", subject,
                                  expectation.doubtful, counted(expectation.judged, "tick")));
   }
+}
+
+std::vector<Expectations::Outcome> Expectations::outcomes() const {
+  std::vector<Outcome> all;
+  for (const Expectation& expectation : expectations_) all.push_back(expectation.outcome);
+  return all;
 }
 
 std::uint64_t Expectations::not_judged() const noexcept {

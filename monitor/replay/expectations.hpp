@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -43,6 +44,7 @@ class Expectations {
     std::uint64_t cycle = 0;  // 0: no tick, all of them
     std::int64_t now_ns = 0;
     std::string what;
+    std::string expectation = {};  // Outcome::expectation
   };
 
   // To be called for every tick; judges only if told. Returns each expectation that is certainly
@@ -61,6 +63,14 @@ class Expectations {
   // Tells, after finish(), how many ticks of each expectation were not judged, or were doubtful and
   // allowed.
   [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
+  // What each expectation is, and its least distance in the ticks that were to be judged.
+  struct Outcome {
+    std::string expectation;  // "at least 0.05 m of arm - table", "zone 'stop'"
+    std::string least;        // empty: no pair was known and on time in any of them
+    std::uint64_t cycle = 0;
+    std::int64_t now_ns = 0;
+  };
+  [[nodiscard]] std::vector<Outcome> outcomes() const;
   // The most ticks that one expectation was not judged in.
   [[nodiscard]] std::uint64_t not_judged() const noexcept;
 
@@ -84,6 +94,8 @@ class Expectations {
     std::uint64_t late_doubts = 0;
     std::optional<Broken> first_late_doubt = {};
     std::vector<std::uint32_t> late_then = {};
+    double least = std::numeric_limits<double>::infinity();  // m; `outcome` tells of it
+    Outcome outcome = {};
   };
   struct Lateness {
     std::int64_t since_ns = 0;
@@ -128,6 +140,7 @@ class Expectations {
   [[nodiscard]] Found certainly_near(const Expectation& expectation, const Tick& tick) const;
   [[nodiscard]] Found too_near(const Expectation& expectation, const Tick& tick) const;
   [[nodiscard]] Found swept_too_near(const Expectation& expectation, const Tick& tick) const;
+  void note_least(Expectation& expectation, const Tick& tick) const;
   void note_ticks(const Expectation& expectation);
 
   const Scene* scene_;

@@ -109,8 +109,17 @@ struct TickNumber {
 struct ReplayFailure {
   TickNumber tick;
   std::int64_t now_ns = 0;
-  double time_s = 0.0;  // after the first tick
-  std::string what;     // which pair, zone or field, and the figures
+  double time_s = 0.0;      // after the first tick of the recording
+  std::string what;         // which pair, zone or field, and the figures
+  std::string expectation;  // ExpectationOutcome::expectation; empty: it is of a comparison
+};
+
+// An expectation and its least distance in the judged ticks, whether it is met or not.
+struct ExpectationOutcome {
+  std::string expectation;  // "at least 0.05 m of arm - table", "zone 'stop'"
+  std::string least;        // pair and figure; empty: no pair was known in any of them
+  TickNumber tick;
+  double time_s = 0.0;  // after the first tick of the recording
 };
 
 // The result of a whole replay.
@@ -121,8 +130,10 @@ struct OfflineReplay {
                                         // follow
   std::vector<std::string> notes;       // what a person should know, in sentences
   std::vector<ReplayFailure> failures;  // the first of each expectation and of the comparison
+  std::vector<ExpectationOutcome> expectations;  // all of them, if the replay came to its end
 
-  std::uint64_t ticks = 0, compared = 0, batches = 0;
+  std::uint64_t ticks = 0;  // in the window, as all counts and times of ticks here
+  std::uint64_t compared = 0, batches = 0;
   std::uint64_t not_judged = 0;  // the most ticks in which one expectation was not judged
   std::uint64_t joins = 0;       // states of a partner that the daemon took over
   std::int64_t first_ns = 0, last_ns = 0;

@@ -111,23 +111,27 @@ void ReplayRun::run_ticks(const std::function<void(const ReplayedTick&)>& on_tic
 // Judgements that are possible only after the last tick.
 void ReplayRun::judge_the_whole() {
   compare_zones();
-  if (in_window_ == 0) {
+  if (result_.ticks == 0) {
     result_.error = nothing_in_window();
     return;
   }
   if (options_.compare && result_.compared == 0) {
-    fail(0, result_.last_ns, "no report could be compared");
+    fail(0, last_ns_, "no report could be compared");
   }
   finish_reference();
   for (const std::string& what : unheard_sensors(loop_.sensors(), *scene_, feed_.log())) {
     if (feed_.log() == nullptr || !feed_.log()->has_topics()) {
       result_.notes.push_back(what);
     } else {
-      fail(0, result_.last_ns, what);
+      fail(0, last_ns_, what);
     }
   }
-  for (const Expectations::Broken& broken : expectations_.finish(loop_.monitor(), result_.last_ns))
-    fail(broken.cycle, broken.now_ns, broken.what);
+  for (const Expectations::Broken& broken : expectations_.finish(loop_.monitor(), last_ns_))
+    fail(broken.cycle, broken.now_ns, broken.what, broken.expectation);
+  for (Expectations::Outcome& outcome : expectations_.outcomes()) {
+    result_.expectations.push_back({std::move(outcome.expectation), std::move(outcome.least),
+                                    number(outcome.cycle), seconds(outcome.now_ns)});
+  }
   std::ranges::copy(expectations_.notes(), std::back_inserter(result_.notes));
   result_.not_judged = expectations_.not_judged();
 }
@@ -157,15 +161,15 @@ void ReplayRun::change_scene(const TickInput& input, const Report& report) {
 // Cycle numbers of the daemon and of the replay differ by the number of ticks that the recording
 // lacks.
 void ReplayRun::begin_tick(const TickInput& input) {
-  if (result_.ticks++ == 0) result_.first_ns = input.time.now_ns;
-  result_.last_ns = input.time.now_ns;
+  if (ran_++ == 0) first_ns_ = input.time.now_ns;
+  last_ns_ = input.time.now_ns;
   if (input.restart) {
     restarted_ = true;
     note("the daemon was started anew {:f} s after the first tick", seconds(input.time.now_ns));
   }
   if (input.recorded == nullptr) return;
   const std::uint64_t cycle = input.recorded->cycle;
-  const bool first = result_.ticks == 1 || input.restart;
+  const bool first = ran_ == 1 || input.restart;
   if (input.joined != 0) {
     if (result_.joins++ == 0) {
       note("the daemon took over the state of its partner, first before tick {} ({:f} s)", cycle,
@@ -191,12 +195,12 @@ void ReplayRun::begin_tick(const TickInput& input) {
 // only the ticks of the window.
 void ReplayRun::end_tick(const TickInput& input, const Report& report,
                          const std::function<void(const ReplayedTick&)>& on_tick) {
-  const std::int64_t after_ns = input.time.now_ns - result_.first_ns;
+  const std::int64_t after_ns = input.time.now_ns - first_ns_;
   const bool in_window =
       after_ns >= whole_ns(options_.start_s) && after_ns <= whole_ns(options_.end_s);
   for (const Expectations::Broken& broken :
        expectations_.check(report, loop_.monitor(), in_window)) {
-    fail(broken.cycle, broken.now_ns, broken.what);
+    fail(broken.cycle, broken.now_ns, broken.what, broken.expectation);
   }
   if (options_.compare) {
     // Bounds for other poses say nothing about these.
@@ -207,7 +211,8 @@ void ReplayRun::end_tick(const TickInput& input, const Report& report,
     zones_.replayed(report, cycle_offset_);
   }
   if (!in_window) return;
-  ++in_window_;
+  if (result_.ticks++ == 0) result_.first_ns = input.time.now_ns;
+  result_.last_ns = input.time.now_ns;
   if (reference_) {
     for (const std::string& what : reference_->check(report, loop_.monitor())) {
       fail(report.cycle, report.now_ns, what);
@@ -252,13 +257,13 @@ void ReplayRun::compare_zones() {
 
 // The reason why no tick was judged.
 std::string ReplayRun::nothing_in_window() {
-  if (result_.ticks == 0 && feed_.log() != nullptr) return std::exchange(result_.damage, {});
-  if (result_.ticks == 0) {
+  if (ran_ == 0 && feed_.log() != nullptr) return std::exchange(result_.damage, {});
+  if (ran_ == 0) {
     return result_.damage.empty() ? "the recording holds neither reports nor poses"
                                   : "nothing can be replayed: no tick is whole before the damage";
   }
   return fmt::format("no tick lies between the start and the end given: the recording lasts {:f} s",
-                     seconds(result_.last_ns));
+                     seconds(last_ns_));
 }
 
 // Reference values without a tick become notes. If no value has a tick, the check fails.
@@ -267,14 +272,18 @@ void ReplayRun::finish_reference() {
   result_.reference = reference_->totals();
   for (const std::string& note : reference_->notes()) result_.notes.push_back(note);
   if (result_.reference->compared == 0) {
-    fail(0, result_.last_ns, "no reference value could be compared");
+    fail(0, last_ns_, "no reference value could be compared");
   }
 }
 
 // A cycle of 0 stands for the replay as a whole.
-void ReplayRun::fail(std::uint64_t cycle, std::int64_t now_ns, const std::string& what) {
-  const TickNumber tick{cycle, cycle > 0 ? cycle + cycle_offset_ : 0};
-  result_.failures.push_back({tick, now_ns, seconds(now_ns), what});
+TickNumber ReplayRun::number(std::uint64_t cycle) const {
+  return {cycle, cycle > 0 ? cycle + cycle_offset_ : 0};
+}
+
+void ReplayRun::fail(std::uint64_t cycle, std::int64_t now_ns, const std::string& what,
+                     const std::string& expectation) {
+  result_.failures.push_back({number(cycle), now_ns, seconds(now_ns), what, expectation});
 }
 
 // Notes the totals of all that was left out, after the last tick.

@@ -53,9 +53,11 @@ class ReplayRun {
     result_.notes.push_back(fmt::format(text, std::forward<Arguments>(arguments)...));
   }
   void show_progress();
-  void fail(std::uint64_t cycle, std::int64_t now_ns, const std::string& what);
+  void fail(std::uint64_t cycle, std::int64_t now_ns, const std::string& what,
+            const std::string& expectation = {});
+  [[nodiscard]] TickNumber number(std::uint64_t cycle) const;
   [[nodiscard]] double seconds(std::int64_t now_ns) const {
-    return static_cast<double>(now_ns - result_.first_ns) * 1e-9;
+    return static_cast<double>(now_ns - first_ns_) * 1e-9;
   }
 
   const Scene* scene_;  // of the last tick
@@ -71,7 +73,8 @@ class ReplayRun {
   std::unique_ptr<ReportDifference> difference_;  // null: nothing is compared
 
   OfflineReplay result_;
-  std::uint64_t in_window_ = 0, not_comparable_ = 0;  // ticks
+  std::uint64_t ran_ = 0, not_comparable_ = 0;  // ticks; those that ran before the window, too
+  std::int64_t first_ns_ = 0, last_ns_ = 0;     // of these
   bool differs_ = false;
   bool gap_noted_ = false;
   bool restarted_ = false, has_changed_ = false;

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <cmath>
 #include <utility>
 
 #include "monitor/interface/pair_name.hpp"
@@ -25,6 +26,38 @@ bool counts(const PairReport& pair, const Report& report) {
 }
 
 }  // namespace
+
+// A pair is queried only where it may be nearer than all before. A zone has its own clearance.
+void Expectations::note_least(Expectation& expectation, const Tick& tick) const {
+  const auto note = [&](double least, std::string text) {
+    expectation.least = least;
+    expectation.outcome.least = std::move(text);
+    expectation.outcome.cycle = tick.report.cycle;
+    expectation.outcome.now_ns = tick.report.now_ns;
+  };
+  const auto is_open = [&](std::uint32_t pair) {
+    return has_awaited_object(pair) || has_late_object(pair);
+  };
+  if (!expectation.distance) {
+    if (!expectation.index) return;
+    const ZoneReport& zone = tick.report.zones[*expectation.index];
+    const bool is_pair = zone.pair < scene_->pairs.size() && !is_open(zone.pair);
+    if (is_pair && std::isfinite(zone.clearance) && zone.clearance < expectation.least)
+      note(zone.clearance,
+           fmt::format("{} has a clearance of {} (its lower bound less both margins)",
+                       pair_name(*scene_, zone.pair), metres(zone.clearance)));
+    return;
+  }
+  if (expectation.all_pairs && tick.report.lower_all >= expectation.least) return;
+  for (const std::uint32_t p : expectation.pairs) {
+    const PairReport pair = tick.monitor.pair_at_least(p, expectation.least);
+    if (!is_known(pair.status) || !(pair.upper < expectation.least) || is_open(p) ||
+        !counts(pair, tick.report))
+      continue;
+    note(pair.upper, fmt::format("{} is {} apart (bounds {} to {})", pair_name(*scene_, p),
+                                 metres(pair.distance), metres(pair.lower), metres(pair.upper)));
+  }
+}
 
 Expectations::Found Expectations::found(const Expectation& expectation, const Tick& tick) const {
   if (is_late(expectation) || is_awaited(expectation)) {

@@ -1,9 +1,10 @@
 """The lines of tools/python/README.md run where the page says, and are Python everywhere."""
 
+import itertools
 import re
 
 import clearance
-from conftest import SOURCE
+from conftest import DOMAIN, SOURCE
 
 TEXT = (SOURCE / "tools/python/README.md").read_text()
 
@@ -31,7 +32,23 @@ def test_the_lines_about_stops_run(monkeypatch, planar_file):
     assert names["answer"].is_free(0.02) and names["answer"].time_limit.factor == 1
 
 
+# Five times, since names and reports come on two topics, in any order.
+def test_the_lines_about_reports_run_with_the_first_report(monkeypatch, run_daemon, planar_file):
+    cell = planar_file.read_text().replace("wall", "table").replace("lower", "hand")
+    planar_file.write_text(cell)
+    urdf = planar_file.parent / "planar.urdf"
+    urdf.write_text(urdf.read_text().replace("lower", "hand").replace('<limit hand=', '<limit lower='))
+    daemon = run_daemon(planar_file)
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(DOMAIN))
+    [block] = blocks_of("Live")
+    block = block.replace('"lab"', repr(daemon.partition)).replace("in reports:", "in itertools.islice(reports, 3):")
+    for _ in range(5):
+        names = {"clearance": clearance, "itertools": itertools}
+        exec(compile(block, "Live", "exec"), names)
+        assert names["report"].pairs_total == 4 and names["hand"]["lower"] == -float("inf")
+
+
 def test_the_other_lines_are_python():
-    for chapter in ("Motions before they are made", "Recordings", "Live", "A cell in shares"):
+    for chapter in ("Motions before they are made", "Recordings", "A cell in shares"):
         block = blocks_of(chapter)[0]
         compile(block, chapter, "exec")

@@ -181,8 +181,8 @@ std::string json(const Vec3& v) { return json_list(v, number); }
 std::string json(const Pose& pose) {
   const Vec3& p = pose.position;
   const Quat& q = pose.orientation;
-  const double all[] = {p.x(), p.y(), p.z(), q.w(), q.x(), q.y(), q.z()};
-  return json_list(all, number);
+  const double turn[] = {q.x(), q.y(), q.z(), q.w()};
+  return R"({"xyz":)" + json(p) + R"(,"quaternion":)" + json_list(turn, number) + '}';
 }
 
 std::string json(const Body& body) {

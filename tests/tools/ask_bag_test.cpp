@@ -268,6 +268,33 @@ TEST_F(AskOfABag, CountsStopsIfItsMotionsHaveToBeStoppable) {
   EXPECT_EQ(answer["time_scaling"]["factor"], 1.0);
 }
 
+// A bar of 1 m lies 2.6 m away. If it is rotated by 90 degrees, its side is towards the arm.
+TEST_F(AskOfABag, AStatedPoseHasTheFormAndTheOrderOfACell) {
+  write_text(folder / "cell.yaml",
+             "name: bag\nunits: {length: m, angle: rad}\n"
+             "robots: [{name: arm, urdf: scara.urdf}]\nobjects:\n"
+             "  - {name: bar, box: {size: [1, 0.2, 0.2]}}\npairs: [{between: [arm, bar]}]\n");
+  const auto ask_with = [&](const std::string& pose) {
+    write_text(path("motion.jsonl"),
+               R"({"joints": ["shoulder"], "times_s": [0, 2], "positions": [[-1], [0.6]], )"
+               R"("held": {"elbow": 0, "push": 0}, "others": "still", "poses": {"bar": )" +
+                   pose + "}}\n");
+    run(kAsk, {path("cell.yaml"), path("motion.jsonl"), "--out", path("answers.jsonl")});
+    return nlohmann::json::parse(read_text(path("answers.jsonl")));
+  };
+  EXPECT_NEAR(ask_with(R"({"xyz": [2.6, 0, 0]})").at("upper"), 0.05, 1e-3) << output;
+  EXPECT_NEAR(ask_with(R"({"xyz": [2.6, 0, 0], "quaternion": [0, 0, 0, 1]})").at("upper"), 0.05,
+              1e-3);
+  EXPECT_NEAR(ask_with(R"({"xyz": [2.6, 0, 0], "quaternion": [0, 0, 0.6, 0.8]})").at("upper"),
+              0.3568, 1e-3);
+  for (const char* refused :
+       {"[2.6, 0, 0, 1, 0, 0, 0]", R"({"xyz": [2.6, 0, 0], "rpy": [0, 0, 1]})", "{}"}) {
+    EXPECT_EQ(ask_with(refused).at("error").get<std::string>().rfind(
+                  R"(poses.bar: expected {"xyz": [x, y, z], "quaternion": [x, y, z, w]})", 0),
+              0u);
+  }
+}
+
 TEST_F(AskOfABag, AnswersHaveTheSameBytesInSeveralThreads) {
   std::vector<RosMessage> bag = {joint_state(kSecondNs, kSecondNs, kRest)};
   for (int i = 0; i < 12; ++i) {

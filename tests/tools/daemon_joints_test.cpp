@@ -243,7 +243,7 @@ TEST_F(DaemonJoints, OfARobotNeedNoCellFile) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
     return daemon->told("joints-heard", {"3 joints of scara"});
   })) << daemon->output();
-  EXPECT_TRUE(daemon->told("how-to-reach", {"CYCLONEDDS_URI='<CycloneDDS>"})) << daemon->output();
+  EXPECT_TRUE(daemon->told("how-to-reach", {"in partition " + dds.partition})) << daemon->output();
   EXPECT_TRUE(daemon->told("robot-note", {"scara", neighbours})) << daemon->output();
 }
 

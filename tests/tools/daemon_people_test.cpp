@@ -1,14 +1,16 @@
 // Persons of a running daemon come and go as a tracker of ROS4HRI says, over real DDS.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <sstream>
 #include <string>
 #include <vector>
 
 #include "monitor/examples/arm/bvh.hpp"
 #include "monitor/examples/arm/made_motion.hpp"
-#include "monitor/examples/arm/ros_tracker.hpp"
+#include "monitor/examples/arm/person_fit.hpp"
 #include "tests/tools/watched_daemon.hpp"
+#include "tools/robot/ros_tracker.hpp"
 
 namespace clearance::test {
 namespace {
@@ -20,7 +22,8 @@ const std::string kPeopleCell =
     "  - {name: two, person: {stature: 1.75, error: 0.1}, groups: [people], age_limit_ms: 500}\n"
     "objects:\n  - {name: post, fixed: true, pose: {xyz: [3, 0, 1]}, sphere: {radius: 0.1}}\n"
     "pairs: [{between: [people, post], publish: true}]\n"
-    "zones: [{name: near, between: [people, post], enter_below: 0.2, leave_above: 0.3}]\n";
+    "zones: [{name: near, between: [people, post], enter_below: 0.2, leave_above: 0.3}]\n"
+    "simulation: {movers: [{frame: body_one, centre: {xyz: [1, 0, 0.93]}}]}\n";
 
 class DaemonPeople : public WatchedDaemon {
  protected:
@@ -80,6 +83,18 @@ TEST_F(DaemonPeople, AreUnknownWhileTheirSkeletonOrTheListIsSilent) {
       << daemon->output();
   EXPECT_TRUE(daemon->told("bodies-silent"));
   EXPECT_TRUE(become({"b1"}, {"b1"}, kKnown, kAbsent));
+}
+
+// The shoulders are at 0.818 of the stature, the hips at 0.530: 0.43 m above the post.
+TEST_F(DaemonPeople, OfASimulationStandWhereItHasTheirFrames) {
+  const ChildProcess robot(kRobot, with({cell}, dds_arguments(dds)));
+  EXPECT_TRUE(step_until(
+      20, [] {}, [&] { return is("torso_one", kKnown) && is("torso_two", kAbsent); }))
+      << daemon->output() << robot.output();
+  EXPECT_NEAR(pair("torso_one").distance, std::hypot(2.0, 0.43) - 0.1 - 0.16, 0.03);
+  EXPECT_FALSE(daemon->told("refused")) << daemon->output();
+  EXPECT_TRUE(robot.wrote("source 'robot' sends 1 person at ")) << robot.output();
+  EXPECT_TRUE(robot.wrote("nothing is sent of 'two'")) << robot.output();
 }
 
 // The output of the demo, as far as it does not depend on the machine.

@@ -59,10 +59,11 @@ constexpr const char* kCube =
     R"({"halfspaces":[[2,0,0,1],[-1,0,0,0.5],[0,1,0,0.5],[0,-1,0,0.5],[0,0,1,0.5],[0,0,-1,0.5]]})";
 
 // `turn`: the quaternion of B.
-std::string cubes(const std::string& id, double x, const std::string& turn = "1,0,0,0") {
+std::string cubes(const std::string& id, double x, const std::string& turn = "0,0,0,1") {
   std::ostringstream out;
   out << R"({"id":")" << id << R"(","a":)" << kCube << R"(,"b":)" << kCube
-      << R"(,"pose_a":[0,0,0,1,0,0,0],"pose_b":[)" << x << ",0,0," << turn << "]}\n";
+      << R"(,"pose_a":{"xyz":[0,0,0]},"pose_b":{"xyz":[)" << x << R"(,0,0],"quaternion":[)" << turn
+      << "]}}\n";
   return out.str();
 }
 
@@ -123,7 +124,7 @@ TEST_F(DistanceTool, GivesTheDoublesOfTheCoreBackExactly) {
 TEST_F(DistanceTool, SaysNullForABoundThatIsNotKnown) {
   const Outcome r =
       run("--cases - --out -", R"({"id":"corner","a":{"halfspaces":[[0,0,1,0]]},"b":{"halfspaces":)"
-                               R"([[1,0,0,0]]},"pose_a":[0,0,0,1,0,0,0],"pose_b":[0,0,0,1,0,0,0]})"
+                               R"([[1,0,0,0]]},"pose_a":{"xyz":[0,0,0]},"pose_b":{"xyz":[0,0,0]}})"
                                "\n");
   EXPECT_EQ(r.status, 0) << r.err;
   ASSERT_EQ(r.lines.size(), 1u);
@@ -138,8 +139,8 @@ TEST_F(DistanceTool, PutsTheWitnessPointOfABodyFarFromTheOtherOneOnItToItsOwnRou
   const Outcome r =
       run("--cases - --out -", R"({"id":"far","a":{"vertices":[[0,0,0]],"radius":0.5},)"
                                R"("b":{"vertices":[[0,0,0]],"radius":0.25},)"
-                               R"("pose_a":[700,-500,510,0.1,0.1,0.7,0.7],)"
-                               R"("pose_b":[0.5,0.25,-0.25,0,0,0,1]})"
+                               R"("pose_a":{"xyz":[700,-500,510],"quaternion":[0.1,0.7,0.7,0.1]},)"
+                               R"("pose_b":{"xyz":[0.5,0.25,-0.25],"quaternion":[0,0,1,0]}})"
                                "\n");
   ASSERT_EQ(r.lines.size(), 1u) << r.err;
   const Vec3 from_middle(r.lines[0]["witness_b"][0].get<double>() - 0.5,
@@ -232,10 +233,10 @@ TEST_F(DistanceTool, ChecksHowFarItsBoundsAreApart) {
 
 TEST_F(DistanceTool, ChecksEveryPoseOfAMotion) {
   std::string line = cubes("motion", 0.0);
-  const std::string start = R"([0,0,0,1,0,0,0])";
+  const std::string start = R"({"xyz":[0,0,0]})";
   line.erase(line.find(R"(,"pose_a")"));
-  line += R"(,"poses":[[)" + start + R"(,[1.5,0,0,1,0,0,0]],[)" + start +
-          R"(,[0,0,3,1,0,0,0]]],"penetrations":[null,null],"distances":["0.5",)";
+  line += R"(,"poses":[[)" + start + R"(,{"xyz":[1.5,0,0]}],[)" + start +
+          R"(,{"xyz":[0,0,3]}]],"penetrations":[null,null],"distances":["0.5",)";
   EXPECT_EQ(run("--cases - --out - --check", line + "\"2\"]}\n").status, 0);
   const Outcome wrong = run("--cases - --out - --check", line + "\"2.0000001\"]}\n");
   EXPECT_EQ(wrong.status, 1);
@@ -256,7 +257,7 @@ TEST_F(DistanceTool, ACheckOfNothingFails) {
   const std::string half = R"({"halfspaces":[[1,0,0,1]]})";
   const Outcome r = run("--cases - --out - --check",
                         R"({"id":"x","distance":"0","penetration":"1","a":)" + half + R"(,"b":)" +
-                            half + R"(,"pose_a":[0,0,0,1,0,0,0],"pose_b":[0,0,0,1,0,0,0]})");
+                            half + R"(,"pose_a":{"xyz":[0,0,0]},"pose_b":{"xyz":[0,0,0]}})");
   EXPECT_EQ(r.status, 0) << r.err;
   EXPECT_EQ(run("--cases - --out - --tolerance 1e-9", cubes("x", 1.5)).status, 2);
 }
@@ -265,15 +266,16 @@ TEST_F(DistanceTool, NamesABadLineAndGoesOn) {
   const std::string bad[] = {
       "{\"id\": 3",
       R"([1, 2])",
-      R"({"id":"x","b":{},"pose_a":[],"pose_b":[]})",
+      R"({"id":"x","b":{},"pose_a":{},"pose_b":{}})",
       R"({"id":"x","a":{"halfspaces":[[1,0,0]]},"b":{"vertices":[[0,0,0]]}})",
       R"({"id":"x","a":{"halfspaces":[[1,0,0,1],[-1,0,0,-2]]},"b":{"vertices":[[0,0,0]]}})",
       R"({"id":"x","a":{"vertices":[[0,0,0]],"radius":-1},"b":{"vertices":[[0,0,0]]}})",
-      R"({"id":"x","a":{"vertices":[[0,0,0]]},"b":{"vertices":[[0,0,0]]},"pose_a":[0,0,0,1,0,0,0],"pose_b":[0,0,0,0,0,0,0]})",
-      R"({"id":"x","a":{"vertices":[[0,0,0]]},"b":{"vertices":[[0,0,0]]},"poses":[[[0,0,0,1,0,0,0]]]})",
+      R"({"id":"x","a":{"vertices":[[0,0,0]]},"b":{"vertices":[[0,0,0]]},"pose_a":{"xyz":[0,0,0]},"pose_b":{"quaternion":[0,0,0,0]}})",
+      R"({"id":"x","a":{"vertices":[[0,0,0]]},"b":{"vertices":[[0,0,0]]},"poses":[[{"xyz":[0,0,0]}]]})",
       R"({"id":"x","a":{"vertices":[[0,0,0]],"radius":1e13},"b":{"vertices":[[0,0,0]]}})",
-      R"({"id":"x","a":{"vertices":[[0,0,0]]},"b":{"vertices":[[0,0,0]]},"pose_a":[0,1e13,0,1,0,0,0],"pose_b":[0,0,0,1,0,0,0]})",
+      R"({"id":"x","a":{"vertices":[[0,0,0]]},"b":{"vertices":[[0,0,0]]},"pose_a":{"xyz":[0,1e13,0]},"pose_b":{"xyz":[0,0,0]}})",
       R"({"id":"x","a":{"vertices":[[0,0,1e999]]},"b":{"vertices":[[0,0,0]]}})",
+      R"({"id":"x","a":{"vertices":[[0,0,0]]},"b":{"vertices":[[0,0,0]]},"pose_a":[0,0,0,1,0,0,0]})",
   };
   const char* expected[] = {"not JSON",
                             "not a JSON object",
@@ -285,7 +287,8 @@ TEST_F(DistanceTool, NamesABadLineAndGoesOn) {
                             "poses[0]: expected [pose_a, pose_b]",
                             "at most 1e12",
                             "pose_a lies more than 1e12 m from the origin",
-                            "not JSON"};
+                            "not JSON",
+                            R"(pose_a: expected {"xyz": [x, y, z], "quaternion": [x, y, z, w]})"};
   std::string in = cubes("good", 2.0);
   for (const std::string& line : bad) in += line + "\n";
   in += cubes("also good", 3.0);
@@ -314,7 +317,7 @@ TEST_F(DistanceTool, WorksOnFilesAndRepeatsForTheClock) {
 TEST_F(DistanceTool, CountsByWhichPathTheAnswersCame) {
   std::ofstream(path("cases.jsonl")) << cubes("apart", 1.5) << '\n'
                                      << cubes("overlapping", 0.25) << '\n'
-                                     << cubes("tilted", 0.25, "0.8,0.36,0.48,0");
+                                     << cubes("tilted", 0.25, "0.36,0.48,0,0.8");
   const Outcome r = run("--cases " + path("cases.jsonl") + " --out " + path("results.jsonl"));
   EXPECT_NE(r.err.find("by feature tracking 1, by the active set 1 (1 touch or overlap, 0 by GJK), "
                        "by features that overlap 1"),

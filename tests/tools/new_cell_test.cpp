@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdlib>
 #include <filesystem>
 #include <string>
@@ -13,6 +14,7 @@
 #include "tests/config/cells.hpp"
 #include "tests/shared/child_process.hpp"
 #include "tests/shared/places.hpp"
+#include "tests/shared/random.hpp"
 #include "tests/shared/scratch_folder.hpp"
 
 namespace clearance {
@@ -96,6 +98,7 @@ class NewCell : public testing::Test {
       pose.world_from_object = cell.simulation.movers.at(0).centre;
     }
     EXPECT_EQ(poses.size(), bodies.find("person") == std::string::npos ? 0u : 1u);
+    expect_the_machine_out_of_reach(scene, joints);
     Monitor monitor(scene);
     TickTime time;
     time.now_ns = now;
@@ -111,6 +114,31 @@ class NewCell : public testing::Test {
       EXPECT_GT(pair.lower, 0.0) << written();
     }
     EXPECT_EQ(scene.sensors.size(), 1u);
+  }
+
+  // In the middle of all ranges, and in drawn positions, nothing is near machine and door.
+  static void expect_the_machine_out_of_reach(const Scene& scene, std::vector<JointSample> joints) {
+    test::Random random(13);
+    for (int i = 0; i < 50; ++i) {
+      for (std::size_t j = 0; j < joints.size(); ++j) {
+        const JointVariable& limits = scene.variables[j];
+        const bool is_limited = std::isfinite(limits.lower) && std::isfinite(limits.upper);
+        const double share = i == 0 ? 0.5 : random.uniform(0.0, 1.0);
+        joints[j].position =
+            is_limited ? limits.lower + share * (limits.upper - limits.lower) : 6.0 * (share - 0.5);
+      }
+      Monitor monitor(scene);
+      TickTime time;
+      time.now_ns = joints.empty() ? 1 : joints[0].stamp_ns;
+      monitor.tick({}, joints, time);
+      for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
+        for (const std::uint32_t object : {scene.pairs[p].first, scene.pairs[p].second}) {
+          const std::string& name = scene.objects[object].name;
+          if (name == "machine" || name == "door")
+            EXPECT_GT(monitor.pair_at_least(p, 0.1).lower, 0.1) << i;
+        }
+      }
+    }
   }
 
   test::ScratchFolder folder_;

@@ -116,14 +116,20 @@ TEST_F(RecordReplay, TableHasEveryPairUnlessOnlyThePublishedAreAskedFor) {
 
 TEST_F(RecordReplay, AResultIsWrittenForCiSystems) {
   ASSERT_EQ(0, record_log()) << output;
-  EXPECT_EQ(0, replay({"--expect-min-distance", "0.01", "--junit", path("met.xml")})) << output;
+  EXPECT_EQ(0,
+            replay({"--expect-min-distance", "0.01", "--end", "0.149", "--junit", path("met.xml")}))
+      << output;
+  EXPECT_THAT(output, HasSubstr("150 ticks, 0.149 s recorded"));
   const std::string met = read_text(folder / "met.xml");
-  EXPECT_THAT(met, HasSubstr("tests=\"1\" failures=\"0\" errors=\"0\""));
-  EXPECT_THAT(met, HasSubstr("<property name=\"ticks\" value=\"200\"/>"));
+  EXPECT_THAT(met, HasSubstr("tests=\"2\" failures=\"0\" errors=\"0\""));
+  EXPECT_THAT(met, HasSubstr("<property name=\"ticks\" value=\"150\"/>"));
   EXPECT_THAT(met, HasSubstr("<property name=\"not_judged\" value=\""));
-  EXPECT_EQ(1, replay({"--expect-min-distance", "0.2", "--junit", path("failed.xml")}));
+  EXPECT_THAT(met, HasSubstr("run.mcap: at least 0.01 m\">\n      <system-out>least: tick 101, "
+                             "0.100 s: hand - box is 0.08 m apart"));
+  EXPECT_EQ(1, replay({"--expect-min-distance", "0.2", "--between", "tool,box=0.01", "--between",
+                       "hand,box", "--junit", path("failed.xml")}));
   const std::string failed = read_text(folder / "failed.xml");
-  EXPECT_THAT(failed, HasSubstr("failures=\"1\" errors=\"0\""));
+  EXPECT_THAT(failed, HasSubstr("tests=\"3\" failures=\"1\" errors=\"0\""));
   EXPECT_THAT(failed, HasSubstr("<failure message=\"tick "));
   EXPECT_EQ(1, replay({"--junit", path("met.xml")})) << "it exists";
   EXPECT_EQ(2, replay({"--junit", path("t.csv"), "--csv", path("t.csv")}));

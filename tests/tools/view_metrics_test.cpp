@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <csignal>
+#include <nlohmann/json.hpp>
 #include <string>
 #include <thread>
 
@@ -61,6 +62,25 @@ TEST(ViewMetrics, AreThoseOfTheDaemonWithItsHistogramsAndNoneWhenItHasEnded) {
   const Answer ended = get(address);
   EXPECT_EQ(ended.status, 502);
   EXPECT_NE(ended.body.find(socket), std::string::npos) << ended.body;
+}
+
+// No page is open. A second request after a pause rests on a newer report.
+TEST(ViewDistance, IsKnownToAProgramWithoutAPageAndUnknownOnceTheDaemonIsSilent) {
+  RunningSmallCell running;
+  const View view(running.arguments());
+  const auto asked = [&] {
+    return nlohmann::json::parse(get(view.page() + "distance.json?a=0&b=1").body);
+  };
+  for (int i = 0; i < 2; ++i) {
+    const nlohmann::json found = asked();
+    EXPECT_TRUE(found["lower"].is_number() && found["upper"].is_number()) << found;
+    EXPECT_GE(found["age_a_ns"], 0) << found;
+    EXPECT_GE(found["age_b_ns"], 0) << found;
+    std::this_thread::sleep_for(std::chrono::milliseconds(2500));  // readers stay for 2 s
+  }
+  running.daemon.signal(SIGTERM);
+  EXPECT_EQ(running.daemon.wait(), 0) << running.daemon.output();
+  EXPECT_TRUE(asked()["lower"].is_null());
 }
 
 TEST(ViewMetrics, AreNotServedWithoutTheOption) {

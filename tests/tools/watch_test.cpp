@@ -17,12 +17,15 @@ TEST(Watch, ShowsADaemonThatComesLaterAndSumsUpAtTheEnd) {
   text.replace(text.find(zone), zone.size(), "enter_below: 3, leave_above: 3.5");
   const CellFile cell(text + "dds: {topics: {distances: plant/distances, zones: plant/zones}}\n");
   const auto dds = dds_arguments(own_dds());
-  ChildProcess watch(kWatch, with({"--plain", "--cell", cell.path()}, dds));
+  ChildProcess watch(kWatch, with({cell.path(), "--plain"}, dds));
   ASSERT_TRUE(eventually([&] { return watch.wrote("waiting for clearanced"); })) << watch.output();
   ChildProcess daemon(kDaemon, with({cell.path()}, dds));
   ChildProcess robot(kRobot, with({cell.path(), "--rate", "200"}, dds));
   ASSERT_TRUE(eventually([&] {
     return watch.wrote("zone near (left - right)") && watch.wrote("tick p50");
+  })) << watch.output();
+  EXPECT_TRUE(eventually([&] {
+    return watch.wrote("oldest input left ") || watch.wrote("oldest input right ");
   })) << watch.output();
   watch.signal(SIGINT);
   EXPECT_EQ(watch.wait(), 0);

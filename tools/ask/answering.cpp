@@ -15,6 +15,7 @@
 #include "monitor/pairs/kept_near.hpp"
 #include "tools/ask/bag_inputs.hpp"
 #include "tools/ask/motion_json.hpp"
+#include "tools/cases/case.hpp"
 #include "tools/shared/named_distance.hpp"
 
 namespace clearance {
@@ -76,7 +77,7 @@ int Answering::answer_all(std::istream& in, std::ostream& out) {
       if (line.contains("id")) motion.id = line["id"];
       motion.question = read_question(line, defaults_);
       motion.place = &place_of(line);
-    } catch (const BadMotion& error) {
+    } catch (const BadLine& error) {
       motion.error = error.what();
     } catch (const nlohmann::json::exception& error) {
       motion.error = std::string("not a motion: ") + error.what();
@@ -251,7 +252,7 @@ AskedPlace& Answering::place_of(const nlohmann::json& motion) {
   const std::filesystem::path file = std::filesystem::path(options_.cell) / (scene + ".yaml");
   if (!add(scene, file)) {
     ++bad_cells_;
-    throw BadMotion("the cell " + file.string() + " cannot be read");
+    throw BadLine("the cell " + file.string() + " cannot be read");
   }
   return *places_.at(scene);
 }

@@ -12,6 +12,7 @@
 
 #include "core/shapes.hpp"
 #include "monitor/ask/asker.hpp"
+#include "tools/cases/case.hpp"
 
 namespace clearance {
 namespace {
@@ -23,20 +24,12 @@ std::vector<double> rows_of(const Json& line, const char* key, std::size_t colum
   std::vector<double> numbers;
   for (const Json& row : line.at(key)) {
     if (row.size() != columns) {
-      throw BadMotion(fmt::format("a row of \"{}\" has {} numbers; expected {}, one for each joint",
-                                  key, row.size(), columns));
+      throw BadLine(fmt::format("a row of \"{}\" has {} numbers; expected {}, one for each joint",
+                                key, row.size(), columns));
     }
     for (const Json& number : row) numbers.push_back(number.get<double>());
   }
   return numbers;
-}
-
-Pose pose_of(const Json& numbers) {
-  const auto n = numbers.get<std::array<double, 7>>();
-  Pose pose;
-  pose.position = {n[0], n[1], n[2]};
-  pose.orientation = Eigen::Quaterniond(n[3], n[4], n[5], n[6]);
-  return pose;
 }
 
 JointTrajectory trajectory_of(const Json& line) {
@@ -54,7 +47,10 @@ ObjectMotion object_motion_of(const std::string& object, const Json& entry) {
   ObjectMotion motion{.object = object,
                       .times = entry.at("times_s").get<std::vector<double>>(),
                       .world_from_object = {}};
-  for (const Json& pose : entry.at("poses")) motion.world_from_object.push_back(pose_of(pose));
+  for (const Json& pose : entry.at("poses")) {
+    motion.world_from_object.push_back(read_pose(
+        pose, fmt::format("moving.{}.poses[{}]", object, motion.world_from_object.size())));
+  }
   return motion;
 }
 
@@ -79,7 +75,7 @@ std::optional<ConvexBody> shape_of(const Json& entry) {
     return std::nullopt;
   }
   if (const auto* error = std::get_if<ShapeError>(&made)) {
-    throw BadMotion("the shape of a payload: " + error->reason);
+    throw BadLine("the shape of a payload: " + error->reason);
   }
   return std::get<ConvexBody>(std::move(made));
 }
@@ -89,7 +85,8 @@ Payload payload_of(const Json& entry) {
   payload.name = entry.at("name").get<std::string>();
   payload.link = entry.at("link").get<std::string>();
   payload.shape = shape_of(entry);
-  if (entry.contains("pose")) payload.link_from_object = pose_of(entry["pose"]);
+  if (entry.contains("pose"))
+    payload.link_from_object = read_pose(entry["pose"], "the pose of a payload");
   if (entry.contains("touch")) payload.touch = entry["touch"].get<std::vector<std::string>>();
   return payload;
 }
@@ -121,7 +118,7 @@ std::optional<ProfileRequest> profile_of(const Json& entry) {
 OthersMove others_of(const std::string& text) {
   if (text == "max_speed") return OthersMove::kWithinMaxSpeed;
   if (text == "still") return OthersMove::kNot;
-  throw BadMotion("\"others\" is \"" + text + "\"; expected \"max_speed\" or \"still\"");
+  throw BadLine("\"others\" is \"" + text + "\"; expected \"max_speed\" or \"still\"");
 }
 
 // The names of objects in an answer.
@@ -195,7 +192,7 @@ std::string margin_text(const Question& question, std::size_t place) {
 }
 
 Question read_question(const Json& line, const Question& defaults) {
-  if (!line.is_object()) throw BadMotion("the line is not a JSON object");
+  if (!line.is_object()) throw BadLine("the line is not a JSON object");
   Question question = defaults;
   question.motion = trajectory_of(line);
   if (line.contains("held")) {
@@ -205,7 +202,7 @@ Question read_question(const Json& line, const Question& defaults) {
   }
   if (line.contains("poses")) {
     for (const auto& [name, pose] : line["poses"].items()) {
-      question.poses.push_back({name, pose_of(pose)});
+      question.poses.push_back({name, read_pose(pose, "poses." + name)});
     }
   }
   if (line.contains("joints_of_others")) {
@@ -225,7 +222,7 @@ Question read_question(const Json& line, const Question& defaults) {
     for (const auto& [name, speed] : line["turn_speeds"].items()) {
       const auto at = std::ranges::find(question.poses, name, &StatedPose::object);
       if (at == question.poses.end())
-        throw BadMotion("\"turn_speeds\" names \"" + name + "\", which has no pose");
+        throw BadLine("\"turn_speeds\" names \"" + name + "\", which has no pose");
       at->turn_speed = speed.get<double>();
     }
   }

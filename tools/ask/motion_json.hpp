@@ -3,7 +3,6 @@
 
 #include <cstddef>
 #include <nlohmann/json.hpp>
-#include <stdexcept>
 #include <string>
 
 #include "config/scene/scene.hpp"
@@ -11,12 +10,7 @@
 
 namespace clearance {
 
-// The text says what is wrong with the line.
-struct BadMotion : std::runtime_error {
-  using std::runtime_error::runtime_error;
-};
-
-// Reads the keys of a motion into `defaults`. Throws BadMotion, or nlohmann::json::exception for a
+// Reads the keys of a motion into `defaults`. Throws BadLine, or nlohmann::json::exception for a
 // value of another type.
 [[nodiscard]] Question read_question(const nlohmann::json& line, const Question& defaults);
 

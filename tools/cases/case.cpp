@@ -48,9 +48,22 @@ constexpr double kFarthest = kLargestCoordinate;  // m
 
 }  // namespace
 
-Pose read_pose(const Json& list, const std::string& where) {
-  const auto v = numbers<7>(list, where, "[x, y, z, qw, qx, qy, qz]");
-  const Pose pose{{v[0], v[1], v[2]}, {v[3], v[4], v[5], v[6]}};
+Pose read_pose(const Json& entry, const std::string& where) {
+  constexpr const char* kForm =
+      R"({"xyz": [x, y, z], "quaternion": [x, y, z, w]}, as in a cell, with one of the two or both)";
+  if (!entry.is_object() || entry.empty() ||
+      entry.size() != entry.count("xyz") + entry.count("quaternion")) {
+    throw BadLine(fmt::format("{}: expected {}; found {}", where, kForm, shown(entry)));
+  }
+  Pose pose;
+  if (const auto xyz = entry.find("xyz"); xyz != entry.end()) {
+    const auto v = numbers<3>(*xyz, where + ".xyz", "[x, y, z]");
+    pose.position = {v[0], v[1], v[2]};
+  }
+  if (const auto quaternion = entry.find("quaternion"); quaternion != entry.end()) {
+    const auto v = numbers<4>(*quaternion, where + ".quaternion", "[x, y, z, w]");
+    pose.orientation = {v[3], v[0], v[1], v[2]};
+  }
   const double norm = pose.orientation.norm();
   if (!pose.position.allFinite() || !std::isfinite(norm)) {
     throw BadLine(fmt::format("{} is not finite", where));

@@ -1,4 +1,5 @@
-// Reads a line of a file of cases: two bodies and their poses.
+// Reads a line of a file of cases: two bodies and their poses. clearance-ask reads its poses so,
+// too.
 #pragma once
 
 #include <nlohmann/json.hpp>
@@ -27,7 +28,7 @@ struct DistanceCase {
 // Read parts of a line. `where` names the place ("pose_a") for the message. All throw BadLine.
 [[nodiscard]] const nlohmann::json& member(const nlohmann::json& object, const char* key,
                                            const std::string& where);
-[[nodiscard]] Pose read_pose(const nlohmann::json& list, const std::string& where);
+[[nodiscard]] Pose read_pose(const nlohmann::json& entry, const std::string& where);
 [[nodiscard]] ConvexBody read_body(const nlohmann::json& body, const std::string& where);
 [[nodiscard]] std::vector<std::pair<Pose, Pose>> read_poses(const nlohmann::json& line);
 

@@ -93,9 +93,8 @@ void print_summary(const OfflineReplay& replay, const CheckArguments& arguments,
   std::FILE* const out = arguments.balance > 0 ? stderr : stdout;
   const std::optional<double> tolerance = arguments.tolerance;
   const double recorded_s = static_cast<double>(replay.last_ns - replay.first_ns) * 1e-9;
-  print(out, "{}, {:.3f} s recorded, replayed in {:.3f} s ({:.0f} times as fast)\n",
-        counted(replay.ticks, "tick"), recorded_s, elapsed_s,
-        elapsed_s > 0.0 ? recorded_s / elapsed_s : 0.0);
+  print(out, "{}, {:.3f} s recorded, replayed in {:.3f} s\n", counted(replay.ticks, "tick"),
+        recorded_s, elapsed_s);
   if (replay.not_judged > 0) {
     print(out, "not judged: {} of {}\n", replay.not_judged, counted(replay.ticks, "tick"));
   }

@@ -31,18 +31,19 @@ SimulatedRobot::SimulatedRobot(const Cell& cell, client::Connection& connection,
     for (const PoseAt& pose : poses_)
       moving_.emplace_back(*catalogue_, cell.scene.objects[pose.object].name);
   }
-  if (!simulation_.frames.empty()) {
+  find_people(cell, connection);
+  if (!frames_.empty()) {
     frames_writer_ = connection.participant().ros_writer(kRosTf, ros_dds_name("/tf"));
-    reserve_sequence(frames_message_->transforms, simulation_.frames.size());
-    for (const SimulatedFrame& frame : simulation_.frames) {
+    reserve_sequence(frames_message_->transforms, frames_.size());
+    for (const SimulatedFrame* const frame : frames_) {
       auto& out = frames_message_->transforms._buffer[frames_message_->transforms._length++];
       out.header.frame_id = dds_string_dup(cell.ros.world_frame.c_str());
-      out.child_frame_id = dds_string_dup(frame.name.c_str());
+      out.child_frame_id = dds_string_dup(frame->name.c_str());
     }
   }
-  if (cell.scene.variables.empty()) return;
-  positions_.resize(cell.scene.variables.size());
-  velocities_.resize(cell.scene.variables.size());
+  if (sent_joints_.empty()) return;
+  positions_.resize(sent_joints_.size());
+  velocities_.resize(sent_joints_.size());
   if (!options.ros_topic.empty()) {
     ros_writer_ = connection.participant().ros_writer(kRosJointState, "rt" + options.ros_topic);
     make_ros_message();
@@ -50,7 +51,7 @@ SimulatedRobot::SimulatedRobot(const Cell& cell, client::Connection& connection,
   }
   const std::string source = poses_.empty() ? options.source : "joints of " + options.source;
   std::vector<std::string> names;
-  for (const JointVariable& variable : cell.scene.variables) names.push_back(variable.name);
+  for (const std::uint32_t joint : sent_joints_) names.push_back(cell.scene.variables[joint].name);
   joint_writer_.emplace(connection, source.substr(0, kMaxSourceLength), names);
 }
 
@@ -60,31 +61,44 @@ SimulatedRobot::~SimulatedRobot() {
   }
 }
 
+// A tracker tells of persons, and nothing else sends their joints and frames.
+void SimulatedRobot::find_people(const Cell& cell, client::Connection& connection) {
+  std::vector<std::string> bodies;
+  for (const Robot& robot : scene_.robots)
+    if (robot.person) bodies.push_back(robot.base.frame);
+  if (!bodies.empty()) people_.emplace(cell, connection);
+  for (const SimulatedFrame& frame : simulation_.frames)
+    if (std::ranges::find(bodies, frame.name) == bodies.end()) frames_.push_back(&frame);
+  for (std::uint32_t i = 0; i < scene_.variables.size(); ++i)
+    if (!scene_.robots[scene_.variables[i].robot].person) sent_joints_.push_back(i);
+}
+
 // The names never change, so they are written once.
 void SimulatedRobot::make_ros_message() {
-  const std::size_t count = scene_.variables.size();
+  const std::size_t count = sent_joints_.size();
   ros_message_->header.frame_id = dds_string_dup("");
   reserve_sequence(ros_message_->name, count);
   reserve_sequence(ros_message_->position, count);
   reserve_sequence(ros_message_->velocity, count);
-  for (const JointVariable& variable : scene_.variables) {
+  for (const std::uint32_t joint : sent_joints_) {
     ros_message_->name._buffer[ros_message_->name._length++] =
-        dds_string_dup(variable.name.c_str());
+        dds_string_dup(scene_.variables[joint].name.c_str());
   }
 }
 
 void SimulatedRobot::send(double t_s, std::int64_t stamp_ns) {
   ++sent_;
   if (pose_writer_) send_poses(t_s, stamp_ns);
-  if (!scene_.variables.empty()) send_joints(t_s, stamp_ns);
-  if (frames_writer_ != 0 && elapsed(frames_sent_ns_, stamp_ns) >= kFramesEveryNs)
-    send_frames(t_s, stamp_ns);
+  if (!sent_joints_.empty()) send_joints(t_s, stamp_ns);
+  if (elapsed(frames_sent_ns_, stamp_ns) < kFramesEveryNs) return;
+  frames_sent_ns_ = stamp_ns;
+  if (frames_writer_ != 0) send_frames(t_s, stamp_ns);
+  if (people_) people_->send(t_s, stamp_ns);
 }
 
 void SimulatedRobot::send_frames(double t_s, std::int64_t stamp_ns) {
-  frames_sent_ns_ = stamp_ns;
-  for (std::size_t i = 0; i < simulation_.frames.size(); ++i) {
-    const Pose pose = frame_at(simulation_.frames[i], t_s);
+  for (std::size_t i = 0; i < frames_.size(); ++i) {
+    const Pose pose = frame_at(*frames_[i], t_s);
     const Vec3& p = pose.position;
     const Eigen::Quaterniond& q = pose.orientation;
     auto& out = frames_message_->transforms._buffer[i];
@@ -122,9 +136,9 @@ void SimulatedRobot::send_poses(double t_s, std::int64_t stamp_ns) {
 
 void SimulatedRobot::send_joints(double t_s, std::int64_t stamp_ns) {
   motion_(t_s, joint_samples_);
-  for (std::size_t i = 0; i < joint_samples_.size(); ++i) {
-    positions_[i] = joint_samples_[i].position;
-    velocities_[i] = joint_samples_[i].velocity;
+  for (std::size_t i = 0; i < sent_joints_.size(); ++i) {
+    positions_[i] = joint_samples_[sent_joints_[i]].position;
+    velocities_[i] = joint_samples_[sent_joints_[i]].velocity;
   }
   if (ros_writer_ != 0) return send_joints_to_ros(stamp_ns);
   failed_ += !joint_writer_->write(positions_, velocities_, stamp_ns);

@@ -167,6 +167,7 @@ int RobotsOfFiles::read(const NamedRobot& named, StarterRobot& robot) {
   robot.name = scene.robots.front().name;
   for (const JointVariable& variable : scene.variables)
     if (variable.name.find('/') == std::string::npos) robot.variables.push_back(variable);
+  robot.reach = reach_to_the_front(scene);
   robot.lowest = kInfinity;
   for (const LinkExtent& extent : extents_at_zero(scene)) {
     const Object& link = scene.objects[extent.object];

@@ -139,23 +139,26 @@ bool turns_level(const Robot& robot, const Posable& posed, std::uint32_t link) {
   return turns;
 }
 
-// A half-space far outside on either side of each axis: the distance from it is a bound.
-LinkExtent extent_of(const Object& object, const Pose& pose) {
+// A bound of the object along the direction, m: by the distance from a half-space far outside.
+double farthest(const Object& object, const Pose& pose, const Vec3& direction) {
   constexpr double kFar = 1e4;  // m
-  LinkExtent extent{.low = Vec3::Constant(kInfinity), .high = Vec3::Constant(-kInfinity)};
+  const HalfSpace outside{-direction, -kFar};
+  const auto wall = std::get<ConvexBody>(polyhedron_from_halfspaces({&outside, 1}));
+  double least = kInfinity;
+  for (const Part& part : object.parts) {
+    const Pose placed = compose(pose, part.object_from_part);
+    TrackingState state;
+    least =
+        std::min(least, distance(wall, part.shape, relative_pose(Pose{}, placed), state, {}).lower);
+  }
+  return kFar - least;
+}
+
+LinkExtent extent_of(const Object& object, const Pose& pose) {
+  LinkExtent extent;
   for (int axis = 0; axis < 3; ++axis) {
-    for (const double side : {1.0, -1.0}) {
-      const HalfSpace outside{side * Vec3::Unit(axis), -kFar};
-      const auto wall = std::get<ConvexBody>(polyhedron_from_halfspaces({&outside, 1}));
-      for (const Part& part : object.parts) {
-        const Pose placed = compose(pose, part.object_from_part);
-        TrackingState state;
-        const double from_wall =
-            distance(wall, part.shape, relative_pose(Pose{}, placed), state, {}).lower - kFar;
-        double& bound = side > 0.0 ? extent.low[axis] : extent.high[axis];
-        bound = side > 0.0 ? std::min(bound, from_wall) : std::max(bound, -from_wall);
-      }
-    }
+    extent.low[axis] = -farthest(object, pose, -Vec3::Unit(axis));
+    extent.high[axis] = farthest(object, pose, Vec3::Unit(axis));
   }
   return extent;
 }
@@ -175,6 +178,24 @@ std::vector<LinkExtent> extents_at_zero(const Scene& scene) {
     extents.back().turns_level = turns_level(robot, posed, link);
   }
   return extents;
+}
+
+double reach_to_the_front(const Scene& scene) {
+  constexpr int kSamples = 5'000;
+  const Robot& robot = scene.robots.front();
+  Posable posed(scene);
+  posed.pose_at_zero();
+  SeededDraw draw(1);
+  double reach = -kInfinity;
+  for (int i = 0; i <= kSamples; ++i) {
+    for (std::uint32_t link = 0; link < robot.links.size(); ++link) {
+      const std::uint32_t object = robot.links[link].object;
+      if (object == RobotLink::kNoObject) continue;
+      reach = std::max(reach, farthest(scene.objects[object], posed.pose_of(link), Vec3::UnitX()));
+    }
+    posed.pose_at_random(draw);
+  }
+  return reach;
 }
 
 std::vector<SampledPair> sample_contacts(const Scene& scene, const SamplingOptions& options) {

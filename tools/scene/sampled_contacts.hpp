@@ -1,5 +1,5 @@
-// Samples which links of a robot touch each other, in random positions of its joints, and how far
-// they extend at zero.
+// Samples which links of a robot touch each other, in random positions of its joints, how far they
+// come, and how far they extend at zero.
 #pragma once
 
 #include <cstdint>
@@ -40,5 +40,7 @@ struct LinkExtent {
 
 // Of the scene's only robot.
 [[nodiscard]] std::vector<LinkExtent> extents_at_zero(const Scene& scene);
+// How far its links come along x, m: the most in seeded random positions and at zero.
+[[nodiscard]] double reach_to_the_front(const Scene& scene);
 
 }  // namespace clearance

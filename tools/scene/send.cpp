@@ -177,6 +177,8 @@ CommandLine send_line(SendArguments& arguments) {
        "Send this file along; changes name it as \"sent:NAME\"; repeatable", existing_file()},
       {"--timeout", &arguments.timeout_s, "Wait for each result for this time, s",
        positive_number(), shown()},
+      {"--cell", &arguments.cell,
+       "A cell file, which names domain, partition, interface and topics"},
       {"--dry-run", &arguments.dry_run, "Only ask whether the changes would be accepted"},
       {"--back", &arguments.back, "A file with changes that take those of CHANGES back"},
       {"--repeat", &arguments.repeats,
@@ -184,7 +186,6 @@ CommandLine send_line(SendArguments& arguments) {
        "holds them",
        whole_number(1, 10'000'000), needing("--back")},
   });
-  line.add({topics_option(arguments.cell)});
   arguments.dds.add_to(line);
   return line;
 }

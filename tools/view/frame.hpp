@@ -47,6 +47,8 @@ class Frame {
 
   // Sends the messages that came since the last call.
   void publish(Server& server);
+  // Places the objects where the newest report that was taken has them. publish() does so, too.
+  void use_report();
 
   // The revision of the latest report or catalogue; 0 until one has come.
   [[nodiscard]] std::uint64_t revision() const noexcept { return revision_; }
@@ -62,7 +64,6 @@ class Frame {
             std::span<const std::byte> cdr);
   std::uint32_t key_of(TopicKind kind, std::span<const std::byte> cdr);
   [[nodiscard]] std::span<const std::byte> made_whole(std::span<const std::byte> cdr);
-  void use_report();
   // Publishes once per report; bodies only once.
   template <class Make>
   void publish_if_wanted(Server& server, ChannelId channel, std::int64_t time_ns, const Make& make);

@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <chrono>
+#include <limits>
 #include <string>
+#include <thread>
 #include <utility>
 #include <variant>
 
@@ -21,6 +23,9 @@ constexpr std::int64_t kSilentNs = 1'000'000'000;
 
 // Readers stay for this time after the last viewer has gone, because a page may be loaded again.
 constexpr std::int64_t kLingerNs = 2'000'000'000;
+
+// The first report comes within this time after its reader was made, if there is a daemon.
+constexpr std::int64_t kFirstReportNs = 500'000'000;
 
 // Topics whose every message is complete are read only while there is a viewer. The last pose must
 // not be missed, because an object that seldom moves sends it once.
@@ -88,17 +93,13 @@ std::string LiveSource::sensors() const {
 
 void LiveSource::advance(Server& server) {
   const std::int64_t steady_ns = SystemClock().monotonic_ns();
-  if (server.viewers() == 0) {
-    if (steady_ns - watched_ns_ > kLingerNs) leave(server);
-    return;
-  }
-  watched_ns_ = steady_ns;
+  if (server.viewers() > 0) watched_ns_ = steady_ns;
+  if (steady_ns - watched_ns_ > kLingerNs) return leave(server);
   for (const TopicKind kind : kOnDemand) {
     if (kind == TopicKind::kDistances || server.is_wanted(channel(kind))) join(kind);
   }
-  for (const Topic& topic : kRecordedTopics) take(topic.kind, steady_ns);
+  take_all(steady_ns);
   const std::int64_t now_ns = SystemClock().realtime_ns();
-  take_from_ros({.realtime_ns = now_ns, .monotonic_ns = steady_ns});
   take_questions(server);
   note_the_catalogue();
   follow_the_catalogue(server);
@@ -108,6 +109,27 @@ void LiveSource::advance(Server& server) {
   tell_of_the_daemon(server, now_ns, steady_ns);
   is_seen_wanted_ = server.is_wanted(kSeen);
   if (seen_) show_what_is_seen(server, steady_ns);
+}
+
+void LiveSource::take_all(std::int64_t steady_ns) {
+  for (const Topic& topic : kRecordedTopics) take(topic.kind, steady_ns);
+  take_from_ros({.realtime_ns = SystemClock().realtime_ns(), .monotonic_ns = steady_ns});
+}
+
+// Of a daemon that is silent, nothing is known.
+std::string LiveSource::distance(std::uint32_t a, std::uint32_t b) {
+  SystemClock clock;
+  watched_ns_ = clock.monotonic_ns();
+  join(TopicKind::kDistances);
+  take_all(watched_ns_);
+  while (!heard_ && clock.monotonic_ns() - watched_ns_ < kFirstReportNs) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(1));
+    take_all(clock.monotonic_ns());
+  }
+  frame_->use_report();
+  const bool is_known = heard_ && clock.realtime_ns() - frame_->report_time_ns() <= kSilentNs;
+  constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
+  return frame_->distance_json(is_known ? a : kNone, is_known ? b : kNone);
 }
 
 void LiveSource::join(TopicKind kind) {

@@ -30,9 +30,8 @@ class LiveSource final : public Source {
 
   // What is attached is known with the first catalogue.
   [[nodiscard]] nlohmann::json parameters() const override;
-  [[nodiscard]] std::string distance(std::uint32_t a, std::uint32_t b) override {
-    return frame_->distance_json(a, b);
-  }
+  // A program may ask while there is no viewer. What a viewer would be shown is taken for it.
+  [[nodiscard]] std::string distance(std::uint32_t a, std::uint32_t b) override;
   [[nodiscard]] std::string sensors() const override;
 
   // Without viewers nothing is taken: readers of poses keep the newest, and there are none of
@@ -43,6 +42,7 @@ class LiveSource final : public Source {
   [[nodiscard]] std::unique_ptr<Frame> make_frame();
   void hear(const RawSensorMessage& message);
   void show_what_is_seen(Server& server, std::int64_t steady_ns);
+  void take_all(std::int64_t steady_ns);
   void join(TopicKind kind);
   void leave(Server& server);
   void take(TopicKind kind, std::int64_t steady_ns);
@@ -83,8 +83,8 @@ class LiveSource final : public Source {
   MergedReports merged_;
   Sample<clearance_msg_Distances> report_;
   Sample<clearance_msg_Health> health_;
-  bool heard_ = false;           // a report has come since there is a viewer
-  std::int64_t watched_ns_ = 0;  // when there was a viewer last, CLOCK_MONOTONIC
+  bool heard_ = false;           // a report has come since there is a viewer, or since one asked
+  std::int64_t watched_ns_ = 0;  // when there was one last, CLOCK_MONOTONIC
 };
 
 }  // namespace clearance::view

@@ -90,6 +90,26 @@ std::string inputs_of(const Feed& feed) {
   return catalogue != nullptr && catalogue->joints._length > 0 ? "inputs" : "poses";
 }
 
+std::string oldest_input(const Feed& feed) {
+  const clearance_msg_Health* const health = feed.health();
+  if (health == nullptr) return "oldest input";
+  std::string name = "oldest input";
+  std::int64_t oldest_ns = -1;
+  const auto add = [&](const auto& inputs) {
+    for (const auto& input : std::span(inputs._buffer, inputs._length)) {
+      if constexpr (requires { input.follows_joints; }) {
+        if (input.follows_joints) continue;
+      }
+      if (input.age_ns <= oldest_ns) continue;
+      oldest_ns = input.age_ns;
+      name = fmt::format("oldest input {}", input.name);
+    }
+  };
+  add(health->inputs);
+  add(health->joints);
+  return name;
+}
+
 std::string cause(const Feed& feed, const clearance_msg_ZoneState& zone) {
   const auto cause = static_cast<ZoneCause>(zone.cause);
   if (cause == ZoneCause::kNear) return "";

@@ -19,6 +19,8 @@ namespace clearance::watch {
 [[nodiscard]] std::string trouble(const Feed& feed, std::int64_t now_ns);
 // A word for all that places the objects of the cell.
 [[nodiscard]] std::string inputs_of(const Feed& feed);
+// "oldest input camera": of what is in use, as last told; "oldest input" before that.
+[[nodiscard]] std::string oldest_input(const Feed& feed);
 // "", or ": poses of hand are late".
 [[nodiscard]] std::string cause(const Feed& feed, const clearance_msg_ZoneState& zone);
 // Names the shares that a joined cell lacks: "share 'north' is missing, share 'south' is late";

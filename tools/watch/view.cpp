@@ -221,8 +221,9 @@ void add_inputs(std::vector<Line>& lines, const Feed& feed, std::size_t width) {
   if (report.newest_pose_ns == 0) {
     ages.add(fmt::format("no {} have come", inputs_of(feed)), Style::kWarning);
   } else {
-    ages.add(fmt::format("{} in use {:.2f} to {:.2f} ms old", inputs_of(feed),
+    ages.add(fmt::format("{} in use {:.2f} ms old, {} {:.2f} ms", inputs_of(feed),
                          kMsPerNs * static_cast<double>(report.now_ns - report.newest_pose_ns),
+                         oldest_input(feed),
                          kMsPerNs * static_cast<double>(report.now_ns - report.oldest_pose_ns)));
   }
   const clearance_msg_Health* health = feed.health();
@@ -359,7 +360,7 @@ std::string plain_line(const Feed& feed, const ViewContext& context) {
                         health->overruns);
   }
   if (report.newest_pose_ns != 0) {
-    text += fmt::format("  {} {:.2f} ms old", inputs_of(feed),
+    text += fmt::format("  {} {:.2f} ms", oldest_input(feed),
                         kMsPerNs * static_cast<double>(report.now_ns - report.oldest_pose_ns));
   }
   return text;

@@ -17,9 +17,10 @@
 #include "config/text/file_bytes.hpp"
 #include "monitor/examples/arm/bvh.hpp"
 #include "monitor/examples/arm/made_motion.hpp"
-#include "monitor/examples/arm/ros_tracker.hpp"
+#include "monitor/examples/arm/person_fit.hpp"
 #include "monitor/examples/arm/true_body.hpp"
 #include "monitor/wire/convert.hpp"
+#include "tools/robot/ros_tracker.hpp"
 
 namespace clearance::people {
 namespace {

@@ -2,19 +2,11 @@
 // skeleton. Only directions of limbs are used: the lengths are those of the skeleton.
 #pragma once
 
-#include <string>
-#include <utility>
-#include <vector>
-
 #include "core/pose.hpp"
 #include "monitor/examples/arm/bvh.hpp"
+#include "tools/robot/ros_tracker.hpp"
 
 namespace clearance::people {
-
-struct Skeleton {
-  Pose world_from_body;                                // between the hips, x forward and y left
-  std::vector<std::pair<std::string, double>> angles;  // by names of joints without the id, rad
-};
 
 // Follows one person: of several equal angles, those next to the last ones.
 class PersonFit {

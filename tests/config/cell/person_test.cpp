@@ -52,6 +52,7 @@ TEST(Person, HasTwelveLimbsWithItsErrorThatGroupsNameAndABaseOnTheFrameOfItsBody
                                           "r_knee_anna"));
   EXPECT_EQ(scene.robots[0].base.frame, "body_anna");
   EXPECT_EQ(scene.robots[0].person->id, "anna");
+  EXPECT_THAT(scene.robots[0].notes, testing::IsEmpty()) << "a person has no SRDF";
 }
 
 // Without `separation`, too.

@@ -46,6 +46,21 @@ TEST_F(ZoneLogTest, SaysHowOftenAZoneFlickersRatherThanEachTime) {
   EXPECT_EQ(logged->count("[zone-flickers]"), 1u) << "a quiet second is no news";
 }
 
+TEST_F(ZoneLogTest, NamesTheClearanceBetweenTicksWhereItIsLess) {
+  ZoneLog zones(scene);
+  ZoneReport near = change(true);
+  near.clearance = near.swept_clearance = 0.015;
+  zones.note(3, near, 7);
+  EXPECT_TRUE(logged->has("ball - post, at least 0.015 m clear [zone-near]")) << logged->text();
+  near.cause = ZoneCause::kLate;
+  near.swept_clearance = -0.002;
+  zones.note(4, near, 8);
+  EXPECT_TRUE(
+      logged->has("ball - post, at least 0.015 m clear, and at least -0.002 m at every "
+                  "instant since the tick before [zone-late]"))
+      << logged->text();
+}
+
 TEST_F(ZoneLogTest, CountsTogetherWhatManyZonesDoAtOnce) {
   ZoneLog zones(scene);
   for (std::uint32_t zone = 0; zone < scene.zones.size(); ++zone) zones.note(zone, change(true), 1);

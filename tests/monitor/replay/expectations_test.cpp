@@ -89,6 +89,41 @@ TEST_F(ReplayExpectations, ExpectedSilentZoneNamesTickPairAndFigureWhenBroken) {
               HasSubstr("zone 'stop' is active: hand - box has a clearance of 0.09"));
 }
 
+// The hand is 0.08 m above the box in the middle of the run, and 0.28 m in the middle of its first
+// half.
+TEST_F(ReplayExpectations, EachTellsItsLeastDistanceInTheWindowWhetherItIsMetOrNot) {
+  record_run(cell, run, {.nearest = 0.08});
+  const OfflineReplay result =
+      replay({.expect_between = {{0.05, "hand", "box"}, {0.2, "box", "hand"}},
+              .expect_no_zone = {"stop"}});
+  ASSERT_EQ(3u, result.expectations.size());
+  EXPECT_EQ("at least 0.05 m of hand - box", result.expectations[0].expectation);
+  EXPECT_EQ("zone 'stop'", result.expectations[2].expectation);
+  for (const ExpectationOutcome& outcome : result.expectations) EXPECT_EQ(101u, outcome.tick.cycle);
+  for (const std::size_t i : {0, 1})
+    EXPECT_THAT(result.expectations[i].least, HasSubstr("hand - box is 0.08 m apart (bounds 0.0"));
+  EXPECT_THAT(result.expectations[2].least, HasSubstr("hand - box has a clearance of 0.08 m"));
+  ASSERT_EQ(2u, result.failures.size()) << result.text();
+  EXPECT_EQ("at least 0.2 m of box - hand", result.failures[0].expectation);
+  EXPECT_EQ("zone 'stop'", result.failures[1].expectation);
+  const OfflineReplay first =
+      replay({.end_s = 0.05, .expect_between = {{0.05, "hand", "box"}}, .expect_no_zone = {}});
+  ASSERT_EQ(1u, first.expectations.size());
+  EXPECT_EQ(51u, first.expectations[0].tick.cycle);
+  EXPECT_THAT(first.expectations[0].least, HasSubstr("hand - box is 0.28 m apart"));
+}
+
+TEST_F(ReplayExpectations, NamesWhatTheCellDoesNotHaveAndWhatWasMeant) {
+  record_run(cell, run);
+  const auto error = [&](const char* a, const char* b) {
+    return replay({.expect_between = {{0.05, a, b}}}).error;
+  };
+  EXPECT_EQ("the cell has neither an object nor a group 'bax'; did you mean 'box'?",
+            error("hand", "bax"));
+  EXPECT_EQ("the cell has neither an object nor a group 'elsewhere'", error("elsewhere", "box"));
+  EXPECT_THAT(error("hand", "hand"), HasSubstr("the cell watches no pair between 'hand' and"));
+}
+
 TEST_F(ReplayExpectations, ZoneThatTheCellLacksIsAnErrorThatNamesThoseItHas) {
   record_run(cell, run);
   EXPECT_THAT(replay({.expect_no_zone = {"halt"}}).error,

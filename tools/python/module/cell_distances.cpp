@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "config/scene/pairs_between.hpp"
 #include "tools/python/module/arrays.hpp"
 #include "tools/python/module/cell.hpp"
 #include "tools/python/module/waiting.hpp"
@@ -208,8 +209,7 @@ std::vector<std::uint32_t> pairs_of(const py::object& pairs, const Scene& scene)
       return (a == first && b == second) || (a == second && b == first);
     });
     if (found == scene.pairs.end())
-      throw py::key_error(
-          fmt::format("pairs: the cell watches no pair of '{}' and '{}'", first, second));
+      throw py::key_error("pairs: " + why_no_pairs_between(scene, first, second));
     chosen.push_back(static_cast<std::uint32_t>(found - scene.pairs.begin()));
   }
   return chosen;

@@ -228,9 +228,11 @@ class Questions : public Live<QuestionParts> {
     }
     if (stopped) throw py::error_already_set();
     if (result) return *result;
-    const std::string why = parts->questions.is_heard()
-                                ? "nothing is known of the motion"
-                                : "no daemon answers questions on " + parts->connection->where();
+    const std::string why =
+        parts->questions.is_heard()
+            ? "nothing is known of the motion; the daemon may still answer, so ask again "
+              "with a longer timeout"
+            : "no daemon answers questions on " + parts->connection->where();
     PyErr_SetString(PyExc_TimeoutError,
                     fmt::format("no answer came within {} s: {}", timeout, why).c_str());
     throw py::error_already_set();

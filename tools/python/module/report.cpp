@@ -157,9 +157,8 @@ void add_fields(py::class_<Report>& type) {
 }
 
 void add_records(py::class_<Report>& type) {
-  type.def_property_readonly(
-          "pair_names", &Report::pair_names,
-          "Two names for each record of `pairs`; None while names have not come.")
+  type.def_property_readonly("pair_names", &Report::pair_names,
+                             "Two names for each record of `pairs`.")
       .def("__getitem__", &Report::find, py::arg("pair"),
            R"(The record of a published pair by two names, in any order. Raises KeyError.)")
       .def_property_readonly("minimum_names", &Report::minimum_names, "Its two names, or None.")
@@ -168,7 +167,7 @@ void add_records(py::class_<Report>& type) {
           R"((pairs, joints): how each distance of `pairs` changes with each of `joints`, m/rad or m/m.
 
 0: the joint does not move the pair. NaN: not known, or no joint moves the pair. None: not asked for
-(Reports(gradients=True)), not published (`gradients: true` in the cell), or names have not come.)")
+(Reports(gradients=True)), or not published (`gradients: true` in the cell).)")
       .def_readonly(
           "drifts", &Report::drifts,
           R"((pairs,): the rate of change if all joints stood still, m/s; None like `gradients`.)")
@@ -189,10 +188,10 @@ age_human_ns, age_robot_ns. m, m/s, ns, as in ISO/TS 15066; None like `separated
 pair, share (0 to 1), time (s). None like `separated_zones`.)")
       .def_property_readonly(
           "joints", [](const Report& r) { return r.all_names(&Names::joints); },
-          "Names of the columns of `gradients`; None while names have not come.")
+          "Names of the columns of `gradients`.")
       .def_property_readonly(
           "zone_names", [](const Report& r) { return r.all_names(&Names::zones); },
-          "Names of all zones by id; None while names have not come.");
+          "Names of all zones by id.");
 }
 
 void add_figures(py::class_<Report>& type) {

@@ -2,7 +2,10 @@
 #include <fmt/format.h>
 #include <pybind11/stl.h>
 
+#include <algorithm>
+#include <chrono>
 #include <memory>
+#include <optional>
 #include <utility>
 
 #include "monitor/client/client.hpp"
@@ -28,6 +31,8 @@ struct ReportParts {
 
   SharedConnection connection;
   client::Reports stream;
+  ReportCheck check;  // of the stream's report, and what those said that were passed over before it
+  bool is_first = true;
   client::Catalogue catalogue;
   client::Zones zones;
   client::Health health;
@@ -40,6 +45,29 @@ std::shared_ptr<const Names> names_of(ReportParts& parts, std::uint64_t revision
   if (auto known = parts.names.of(revision)) return known;
   parts.catalogue.update();
   return parts.names.of(revision, parts.catalogue.message(revision));
+}
+
+// Names may come a little later than the first reports of a scene, on another topic. Those are
+// passed over, since nothing can be found in them.
+bool take_named(ReportParts& parts, bool newest, std::chrono::nanoseconds timeout) {
+  using Clock = std::chrono::steady_clock;
+  const auto end = Clock::now() + timeout;
+  client::Reports& stream = parts.stream;
+  for (;;) {
+    const auto left = std::max(end - Clock::now(), Clock::duration::zero());
+    if (!(newest ? stream.newest(left) : stream.next(left))) return false;
+    const ReportCheck before = std::exchange(parts.check, stream.check());
+    parts.check.other_daemon |= before.other_daemon;
+    parts.check.other_scene |= before.other_scene;
+    parts.check.missed += before.missed;
+    const auto has_names = [&] {
+      return parts.catalogue.message(stream->scene_revision) != nullptr;
+    };
+    if (has_names()) return true;
+    parts.catalogue.update();
+    if (has_names()) return true;
+    ++parts.check.missed;
+  }
 }
 
 class Reports : public Live<ReportParts> {
@@ -62,7 +90,7 @@ class Reports : public Live<ReportParts> {
                                                       std::chrono::duration<double>(*timeout_s))
                                  : Clock::time_point::max();
       came = wait_in_slices(timeout_s, [&](std::chrono::nanoseconds slice) {
-        return newest ? parts->stream.newest(slice) : parts->stream.next(slice);
+        return take_named(*parts, newest, slice);
       });
       const clearance_msg_Distances& report = *parts->stream;
       if (came && parts->gradients) beside.gradients = parts->gradients->of(report, end);
@@ -70,7 +98,10 @@ class Reports : public Live<ReportParts> {
     }
     if (!came) return py::none();
     const clearance_msg_Distances& report = *parts->stream;
-    return py::cast(report_of(report, parts->stream.check(), parts->stream.partner().state,
+    ReportCheck check = std::exchange(parts->check, {});
+    if (std::exchange(parts->is_first, false))
+      check.other_daemon = check.other_scene = false, check.missed = 0;
+    return py::cast(report_of(report, check, parts->stream.partner().state,
                               names_of(*parts, report.scene_revision), beside));
   }
 
@@ -116,8 +147,8 @@ void add_reports(py::module_& module) {
   add_report_class(module);
   py::class_<Reports> reports(module, "Reports", R"(The reports of a running daemon.
 
-Iterating waits for each in order, without an end. One thread uses it at a time. Waits release the
-interpreter's lock, and Ctrl-C ends them.)");
+Iterating waits for each in order, without an end. Reports come once the names of their scene have come.
+One thread uses it at a time. Waits release the interpreter's lock, and Ctrl-C ends them.)");
   reports
       .def(
           py::init<const SharedConnection&, double, std::int32_t, bool, bool,

@@ -1,6 +1,6 @@
-#include "monitor/examples/arm/ros_tracker.hpp"
+#include "tools/robot/ros_tracker.hpp"
 
-#include <utility>
+#include <algorithm>
 
 #include "monitor/participant/participant.hpp"
 #include "monitor/wire/ros_types.hpp"
@@ -26,8 +26,8 @@ RosTracker::RosTracker(client::Connection& connection, std::string world_frame)
       frames_(connection.participant().ros_writer(kRosTf, ros_dds_name("/tf"))) {}
 
 RosTracker::~RosTracker() {
-  for (const dds_entity_t writer : {ids_, frames_, joints_})
-    if (writer != 0) dds_delete(writer);
+  for (const dds_entity_t writer : {ids_, frames_}) dds_delete(writer);
+  for (const auto& [id, writer] : joints_) dds_delete(writer);
 }
 
 void RosTracker::list(const std::vector<std::string>& ids, std::int64_t stamp_ns) {
@@ -37,14 +37,18 @@ void RosTracker::list(const std::vector<std::string>& ids, std::int64_t stamp_ns
   for (const std::string& id : ids)
     message->ids._buffer[message->ids._length++] = dds_string_dup(id.c_str());
   dds_write(ids_, &*message);
+  std::erase_if(joints_, [&ids](const auto& of_body) {
+    const bool is_gone = std::ranges::find(ids, of_body.first) == ids.end();
+    if (is_gone) dds_delete(of_body.second);
+    return is_gone;
+  });
 }
 
 void RosTracker::tell(const std::string& id, const Skeleton& skeleton, std::int64_t stamp_ns) {
-  if (id != joints_of_) {
-    if (joints_ != 0) dds_delete(joints_);
-    joints_ = connection_.participant().ros_writer(
+  dds_entity_t& writer = joints_[id];
+  if (writer == 0) {
+    writer = connection_.participant().ros_writer(
         kRosJointState, ros_dds_name("/humans/bodies/" + id + "/joint_states"));
-    joints_of_ = id;
   }
   Sample<tf2_msgs_msg_dds__TFMessage_> frames;
   reserve_sequence(frames->transforms, 1);
@@ -64,7 +68,7 @@ void RosTracker::tell(const std::string& id, const Skeleton& skeleton, std::int6
     joints->name._buffer[joints->name._length++] = dds_string_dup((name + "_" + id).c_str());
     joints->position._buffer[joints->position._length++] = angle;
   }
-  dds_write(joints_, &*joints);
+  dds_write(writer, &*joints);
 }
 
 }  // namespace clearance::people
