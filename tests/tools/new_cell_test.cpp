@@ -118,7 +118,7 @@ class NewCell : public testing::Test {
 
   // In the middle of all ranges, and in drawn positions, nothing is near machine and door.
   static void expect_the_machine_out_of_reach(const Scene& scene, std::vector<JointSample> joints) {
-    test::Random random(13);
+    Random random(13);
     for (int i = 0; i < 50; ++i) {
       for (std::size_t j = 0; j < joints.size(); ++j) {
         const JointVariable& limits = scene.variables[j];
@@ -134,8 +134,9 @@ class NewCell : public testing::Test {
       for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
         for (const std::uint32_t object : {scene.pairs[p].first, scene.pairs[p].second}) {
           const std::string& name = scene.objects[object].name;
-          if (name == "machine" || name == "door")
+          if (name == "machine" || name == "door") {
             EXPECT_GT(monitor.pair_at_least(p, 0.1).lower, 0.1) << i;
+          }
         }
       }
     }
