@@ -3,7 +3,7 @@ import re, signal, subprocess, time
 
 import cells
 
-CAMERA_REPORTS = "reports compared with what cameras saw"
+COMPARED = "bounds compared with what cameras saw"
 
 def bodies(run, _, daemons=("daemon",)):
     """A random cell: a daemon, and a program for each source."""
@@ -11,8 +11,7 @@ def bodies(run, _, daemons=("daemon",)):
     for source in run.drawn.sources:
         run.start_sender(source, source)
     for name in daemons:
-        recording = run.folder / f"{name}.mcap"
-        run.start_daemon(name, "--record", recording, "--record-every", 20).recording = recording
+        run.start_daemon(name)
 
 
 def partners(run, rng):
@@ -34,7 +33,7 @@ def after(run):
     for robot in (one for one in run.ended if one.name == "robot"):
         text = robot.log.read_text(errors="replace")
         found = re.findall(r"^truth .*: (\d+) reports?,.* (\d+) not within the bounds", text, re.MULTILINE)
-        run.count(CAMERA_REPORTS, sum(int(count) for count, _ in found))
+        run.count(COMPARED, sum(int(count) for count, _ in found))
         if not found or any(wrong != "0" for _, wrong in found):
             run.failures.append(f"the robot says of what cameras saw: {text[-2000:]}")
     for daemon in (one for one in run.ended if one.name.startswith("daemon")):

@@ -72,9 +72,13 @@ class Run:
         self.living[name] = process
         return process
 
-    def start_daemon(self, name, *more):
+    def start_daemon(self, name):
         partner = ["--partner", name] if self.kind == "partners" else []
-        return self.start(name, [self.bin / "clearanced", self.file, *self.network, *partner, *more])
+        recording = None if self.kind == "cameras" else self.folder / f"{name}-{len(self.ended)}.mcap"
+        record = ["--record", recording, "--record-every", 20] if recording else []
+        process = self.start(name, [self.bin / "clearanced", self.file, *self.network, *partner, *record])
+        process.recording = recording
+        return process
 
     def start_sender(self, source, name):
         return self.start(f"sender-{name}", [sys.executable, HERE / "sender.py", self.folder / "motion.json", source, name,
@@ -211,7 +215,7 @@ class Run:
     def result(self):
         processes = [{"name": one.name, "samples": one.samples} for one in self.ended if one.name.startswith("daemon")]
         return {"seed": self.seed, "kind": self.kind, "reports": self.reports, "missed": self.missed, "faults": self.faults,
-                "judged": self.judge.judged if self.judge else self.counts.get(rounds.CAMERA_REPORTS, 0),
+                "judged": self.judge.judged if self.judge else self.counts.get(rounds.COMPARED, 0),
                 "pairs_judged": self.judge.pairs if self.judge else 0, "false": self.judge.false if self.judge else [],
                 "false_count": self.judge.false_count if self.judge else 0, "processes": processes, "counts": self.counts,
                 "failures": self.failures, "folder": str(self.folder)}
