@@ -76,7 +76,11 @@ class Evidence(unittest.TestCase):
         self.assertEqual(faults, ["P1: Some.Fails: failed", "P1: Some.Skips: skipped", "P1: Some.Ends: not run"])
 
     def test_JoinsTimesWithTheRowThatTellsThem(self):
-        page = """## Late
+        page = """## Stops
+| what is wrong | published meanwhile | what to do | test |
+|---|---|---|---|
+| a joint is late: `[poses-late]` | nothing | see below | `Stops.Late` |
+## Late
 | code | the line says | cause | what to do |
 |---|---|---|---|
 | `[poses-late]` | poses are late | the source stopped | start it again |
@@ -92,10 +96,10 @@ class Evidence(unittest.TestCase):
 """
         time = {"kind": "Silence", "test": "Lies.Are/Silence", "p50_ticks": 21, "max_ticks": 23, "runs": 5}
         found, lost = fmea.joined(page, {"poses-late": [time], "no pose": [time], "pose": [time]})
-        self.assertEqual([len(row["times"]) for row in found], [1, 0, 1])
-        self.assertEqual([row["detection"] for row in found], ["`[poses-late]`"] * 2 + ["not finite; no pose"])
-        self.assertEqual((found[2]["cause"], found[2]["effect"]), ("nonsense | damage", "unknown"))
-        self.assertEqual({row["test"] for row in found}, {"`Poses.*`"})
+        self.assertEqual([len(row["times"]) for row in found], [0, 1, 0, 1])
+        self.assertEqual([row["detection"] for row in found], ["see `[poses-late]`"] + ["`[poses-late]`"] * 2 + ["not finite; no pose"])
+        self.assertEqual((found[3]["cause"], found[3]["effect"]), ("nonsense | damage", "unknown"))
+        self.assertEqual([row["test"] for row in found], ["`Stops.Late`"] + ["`Poses.*`"] * 3)
         self.assertEqual(lost, ["monitor/FAULTS.md has no row for 'pose', which Lies.Are/Silence has told"])
         case = {"name": "Are/Silence", "time until detected: poses-late": "21 23 5", "file": "x"}
         self.assertEqual(list(fmea.times_of(case, "Lies")), [("poses-late", time)])

@@ -58,7 +58,7 @@ def rows(page):
             entry = {kind: without_links(row[place]) if place is not None else "" for kind, place in places.items()}
             above = entry["detection"] = entry["detection"] or above
             if not above:
-                entry["detection"] = ", ".join(re.findall(r"`\[[a-z-]+\]`", entry["cause"]))
+                entry["detection"] = ", ".join(f"see {code}" for code in re.findall(r"`\[[a-z-]+\]`", entry["cause"]))
             found.append({"section": section, **entry})
     for entry in found:
         entry["test"] = entry["test"] or "; ".join(tested.get(anchor(entry["section"]), []))
@@ -67,7 +67,8 @@ def rows(page):
 
 def tells(row, name):
     """True if a row is about this code of the log, or about this cause of a refusal."""
-    return f"`[{name}]`" in row["detection"] or name in [part.strip() for part in row["detection"].split(";")]
+    is_of_code = row["detection"].startswith("`[") and f"`[{name}]`" in row["detection"]
+    return is_of_code or name in [part.strip() for part in row["detection"].split(";")]
 
 
 def joined(page, times):
