@@ -367,6 +367,10 @@ TEST_F(SecurityScript, AddsProgramsAndLeavesThoseThatAreThere) {
   ASSERT_EQ(make({"--days", "2", "arm", "client"}), 2) << "'arm' is a name and no role";
   ASSERT_EQ(make({"--days", "2", "robot=arm", "client"}), 0) << output;
   EXPECT_EQ(read_text(path("keys/arm/key.pem")), key);
+  std::filesystem::create_directory(path("keys/planner"));
+  ASSERT_EQ(make({"planner", "robot+planner"}), 0) << output;
+  EXPECT_TRUE(std::filesystem::is_empty(path("keys/planner")));
+  EXPECT_TRUE(std::filesystem::exists(path("keys/robot-planner/cyclonedds.xml")));
   EXPECT_EQ(read_text(path("keys/client/identity_ca.cert.pem")),
             read_text(path("keys/ca/cert.pem")));
 }
@@ -378,6 +382,7 @@ TEST_F(SecurityScript, RefusesWhatIsNoRoleNameOrOptionAndMakesNothing) {
         std::pair{Line{"robot=ca"}, "name 'ca'"}, std::pair{Line{"--days", "0"}, "--days '0'"},
         std::pair{Line{"--at", "here"}, "--at 'here'"},
         std::pair{Line{"--writes", "rt/tf"}, "found 'rt/tf'"},
+        std::pair{Line{"--writes", "robot=<a>"}, "found 'robot=<a>'"},
         std::pair{Line{"--key"}, "no option --key"}}) {
     EXPECT_EQ(make(arguments), 2) << found;
     EXPECT_THAT(output, HasSubstr(found));
