@@ -342,5 +342,53 @@ TEST_F(Security, NoKeyIsReadableByOthersOrPartOfAnyOutput) {
   EXPECT_EQ(files, 7) << "of six programs and the authority";
 }
 
+class SecurityScript : public RunsPrograms {
+ protected:
+  int make(std::vector<std::string> arguments) {
+    arguments.insert(arguments.begin(), path("keys"));
+    return run(places::sources() + "/tools/security", arguments);
+  }
+};
+
+TEST_F(SecurityScript, AddsProgramsAndLeavesThoseThatAreThere) {
+  ASSERT_EQ(make({"viewer", "robot+commander=arm", "--writes", "robot=rt/camera/*", "--reads",
+                  "viewer=left/poses", "--at", "/elsewhere"}),
+            0)
+      << output;
+  EXPECT_THAT(output, HasSubstr("CYCLONEDDS_URI=file:///elsewhere/arm/cyclonedds.xml"));
+  EXPECT_THAT(read_text(path("keys/arm/cyclonedds.xml")), HasSubstr("file:/elsewhere/arm/key.pem"));
+  const std::string arm = read_text(path("keys/arm/permissions.p7s"));
+  for (const char* topic : {"clearance/poses", "clearance/commands", "rt/camera/*"})
+    EXPECT_THAT(arm, HasSubstr("<topic>" + std::string(topic) + "</topic>"));
+  const std::string viewer = read_text(path("keys/viewer/permissions.p7s"));
+  EXPECT_THAT(viewer, HasSubstr("<topic>left/poses</topic>"));
+  EXPECT_THAT(viewer, Not(HasSubstr("<publish>")));
+  const std::string key = read_text(path("keys/arm/key.pem"));
+  ASSERT_EQ(make({"--days", "2", "arm", "client"}), 2) << "'arm' is a name and no role";
+  ASSERT_EQ(make({"--days", "2", "robot=arm", "client"}), 0) << output;
+  EXPECT_EQ(read_text(path("keys/arm/key.pem")), key);
+  std::filesystem::create_directory(path("keys/planner"));
+  ASSERT_EQ(make({"planner", "robot+planner"}), 0) << output;
+  EXPECT_TRUE(std::filesystem::is_empty(path("keys/planner")));
+  EXPECT_TRUE(std::filesystem::exists(path("keys/robot-planner/cyclonedds.xml")));
+  EXPECT_EQ(read_text(path("keys/client/identity_ca.cert.pem")),
+            read_text(path("keys/ca/cert.pem")));
+}
+
+TEST_F(SecurityScript, RefusesWhatIsNoRoleNameOrOptionAndMakesNothing) {
+  using Line = std::vector<std::string>;
+  for (const auto& [arguments, found] :
+       {std::pair{Line{"captain"}, "no role 'captain'"}, std::pair{Line{"robot=a/b"}, "name 'a/b'"},
+        std::pair{Line{"robot=ca"}, "name 'ca'"}, std::pair{Line{"--days", "0"}, "--days '0'"},
+        std::pair{Line{"--at", "here"}, "--at 'here'"},
+        std::pair{Line{"--writes", "rt/tf"}, "found 'rt/tf'"},
+        std::pair{Line{"--writes", "robot=<a>"}, "found 'robot=<a>'"},
+        std::pair{Line{"--key"}, "no option --key"}}) {
+    EXPECT_EQ(make(arguments), 2) << found;
+    EXPECT_THAT(output, HasSubstr(found));
+    EXPECT_FALSE(std::filesystem::exists(path("keys")));
+  }
+}
+
 }  // namespace
 }  // namespace clearance::test

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <cstdlib>
 #include <cstring>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -40,7 +41,7 @@ class SavedState : public testing::Test {
     scene.gradients = true;
     return scene;
   }
-  void tick(Monitor& monitor) {
+  const Report& tick(Monitor& monitor) {
     std::vector<JointSample> joints;
     const double t = 0.001 * ticks;
     for (std::uint32_t i = 0; i < 3 && ticks % 60 < 30; ++i) {
@@ -53,6 +54,7 @@ class SavedState : public testing::Test {
     const Report& report = monitor.tick({&cart, 1}, joints, now());
     checksum = checksum_of(report);
     rest = checksum_of_rest(report, monitor.checksum());
+    return report;
   }
   [[nodiscard]] std::int64_t now() const { return kStart + ticks * kTick; }
 
@@ -98,48 +100,83 @@ TEST_F(SavedState, OfAnotherSceneOrCutOffIsRefused) {
   EXPECT_FALSE(JoinedState(scene).restore(bytes, 1));
 }
 
-// A stranger in the partition forges a state: its length and checksum fit, and some of its bytes
-// are drawn. It is refused, or the ticks that go on from it break no invariant. In builds with
+// A stranger in the partition forges a state: its length and checksum fit. It is refused, or the
+// ticks that go on from it break no invariant and report no bound that is no number. In builds with
 // sanitizers, they touch no foreign memory, and read no byte as a flag that is none.
-TEST_F(SavedState, ThatIsForgedIsRefusedOrHarmless) {
-  scene.objects[1].source = "cart";
-  Monitor monitor(scene);
-  for (int i = 0; i < 45; ++i, ++ticks) tick(monitor);
+class ForgedState : public SavedState {
+ protected:
+  ForgedState() {
+    scene.objects[1].source = "cart";
+    Monitor monitor(scene);
+    for (int i = 0; i < 45; ++i, ++ticks) tick(monitor);
+    save_state(SourceNumbers(scene), SceneIds(scene),
+               *test::taken_over(monitor, scene, scene, numbers), genuine);
+    until = ticks;
+  }
+  void expect_harmless(std::span<const std::byte> bytes) {
+    JoinedState joined(scene);
+    if (!joined.restore(bytes, 1)) {
+      ++refused;
+      return;
+    }
+    TickState restored(scene);
+    if (!restored.may_join(joined)) return;
+    ++joined_states;
+    restored.join(joined);
+    ticks = until;
+    for (int i = 0; i < 4; ++i, ++ticks) {
+      const Report& report = tick(restored.monitor());
+      for (const PairReport& pair : report.pairs) ASSERT_LE(pair.lower, pair.upper);
+      ASSERT_FALSE(std::isnan(report.lower_all));
+    }
+  }
+
+  // A NaN, all bits, -1, infinities, 1e300, the last integers, -0, and few.
+  static constexpr std::uint64_t kHostile[] = {0x7ff8'0000'0000'0000,
+                                               ~std::uint64_t{0},
+                                               0xbff0'0000'0000'0000,
+                                               0x7ff0'0000'0000'0000,
+                                               0xfff0'0000'0000'0000,
+                                               0x7e37'e43c'8800'759c,
+                                               0x7fff'ffff'ffff'ffff,
+                                               0x7fff'ffff,
+                                               0x8000'0000'0000'0000,
+                                               0,
+                                               1,
+                                               2};
   std::vector<std::byte> genuine;
-  save_state(SourceNumbers(scene), SceneIds(scene),
-             *test::taken_over(monitor, scene, scene, numbers), genuine);
-  constexpr std::uint64_t kDrawn[] = {0,
-                                      1,
-                                      2,
-                                      ~std::uint64_t{0},
-                                      0x7ff0'0000'0000'0000,
-                                      0x7ff8'0000'0000'0000,
-                                      0xfff0'0000'0000'0000,
-                                      0x7fff'ffff'ffff'ffff,
-                                      0x8000'0000'0000'0000};
-  Random random(63);
+  int until = 0;
   std::uint64_t refused = 0, joined_states = 0;
-  const int until = ticks;
+};
+
+TEST_F(ForgedState, WithAnyOneFieldHostileIsRefusedOrHarmless) {
+  for (const std::size_t width : {1, 4, 8}) {
+    for (std::size_t at = 0; at + width <= genuine.size(); at += width) {
+      for (const std::uint64_t value : std::span(kHostile).first(repeats(std::size(kHostile)))) {
+        std::vector<std::byte> bytes = genuine;
+        std::memcpy(bytes.data() + at, &value, width);
+        expect_harmless(bytes);
+        ASSERT_FALSE(HasFatalFailure()) << width << " bytes at " << at << ": " << value;
+      }
+    }
+  }
+  EXPECT_GT(refused, genuine.size() / 10);
+  EXPECT_GT(joined_states, genuine.size());
+}
+
+TEST_F(ForgedState, WithDrawnBytesIsRefusedOrHarmless) {
+  Random random(63);
   for (std::uint64_t forgery = 0; forgery < repeats(forgeries()); ++forgery) {
     std::vector<std::byte> bytes = genuine;
     for (int changes = random.integer(1, 3); changes > 0; --changes) {
       const std::uint64_t value =
-          random.chance(0.5) ? random.next() : kDrawn[random.next() % std::size(kDrawn)];
+          random.chance(0.5) ? random.next() : kHostile[random.next() % std::size(kHostile)];
       const std::size_t width = random.chance(0.4) ? 1 : random.chance(0.5) ? 4 : 8;
       const std::size_t at = random.next() % (bytes.size() - width);
       std::memcpy(bytes.data() + at - (random.chance(0.8) ? at % width : 0), &value, width);
     }
-    JoinedState joined(scene);
-    if (!joined.restore(bytes, 1)) {
-      ++refused;
-      continue;
-    }
-    TickState restored(scene);
-    if (!restored.may_join(joined)) continue;
-    ++joined_states;
-    restored.join(joined);
-    ticks = until;
-    for (int i = 0; i < 4; ++i, ++ticks) tick(restored.monitor());
+    expect_harmless(bytes);
+    ASSERT_FALSE(HasFatalFailure()) << forgery;
   }
   EXPECT_GT(refused, repeats(forgeries()) / 10);
   EXPECT_GT(joined_states, repeats(forgeries()) / 10);
