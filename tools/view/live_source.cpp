@@ -116,17 +116,23 @@ void LiveSource::take_all(std::int64_t steady_ns) {
   take_from_ros({.realtime_ns = SystemClock().realtime_ns(), .monotonic_ns = steady_ns});
 }
 
-// Of a daemon that is silent, nothing is known.
+// The first call waits for a report and for the poses of it. Of a daemon that is silent, nothing is
+// known.
 std::string LiveSource::distance(std::uint32_t a, std::uint32_t b) {
   SystemClock clock;
   watched_ns_ = clock.monotonic_ns();
   join(TopicKind::kDistances);
-  take_all(watched_ns_);
-  while (!heard_ && clock.monotonic_ns() - watched_ns_ < kFirstReportNs) {
+  const bool is_first = !heard_;
+  const auto is_placed = [this](std::uint32_t object) {
+    return object >= cell_->scene.objects.size() || frame_->poses().age_ns(object) >= 0;
+  };
+  for (std::int64_t now_ns = watched_ns_;; now_ns = clock.monotonic_ns()) {
+    take_all(now_ns);
+    frame_->use_report();
+    const bool waits = is_first && !(heard_ && is_placed(a) && is_placed(b));
+    if (!waits || now_ns - watched_ns_ > kFirstReportNs) break;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
-    take_all(clock.monotonic_ns());
   }
-  frame_->use_report();
   const bool is_known = heard_ && clock.realtime_ns() - frame_->report_time_ns() <= kSilentNs;
   constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
   return frame_->distance_json(is_known ? a : kNone, is_known ? b : kNone);
