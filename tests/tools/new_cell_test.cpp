@@ -118,7 +118,7 @@ class NewCell : public testing::Test {
 
   // In the middle of all ranges, and in drawn positions, nothing is near machine and door.
   static void expect_the_machine_out_of_reach(const Scene& scene, std::vector<JointSample> joints) {
-    test::Random random(13);
+    Random random(13);
     for (int i = 0; i < 50; ++i) {
       for (std::size_t j = 0; j < joints.size(); ++j) {
         const JointVariable& limits = scene.variables[j];
