@@ -134,8 +134,9 @@ class NewCell : public testing::Test {
       for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
         for (const std::uint32_t object : {scene.pairs[p].first, scene.pairs[p].second}) {
           const std::string& name = scene.objects[object].name;
-          if (name == "machine" || name == "door")
+          if (name == "machine" || name == "door") {
             EXPECT_GT(monitor.pair_at_least(p, 0.1).lower, 0.1) << i;
+          }
         }
       }
     }
