@@ -85,7 +85,16 @@ std::optional<std::string> MotionSearch::fault(const Question& question) const {
   }
   for (const MarginBetween& of : question.margins_between) {
     if (auto fault = wrong(of.margin)) return fault;
-    if (!pairs_between(scene_, of.a, of.b).empty()) continue;
+    const std::vector<std::uint32_t> pairs = pairs_between(scene_, of.a, of.b);
+    const bool is_left_out = std::ranges::all_of(pairs, [&](std::uint32_t pair) {
+      return posture_.is_left_out(scene_.pairs[pair].first) ||
+             posture_.is_left_out(scene_.pairs[pair].second);
+    });
+    if (!is_left_out) continue;
+    if (!pairs.empty()) {
+      return "the margin of \"" + of.a + (of.b.empty() ? "" : "\" and \"" + of.b) +
+             "\" is of pairs that the question leaves out";
+    }
     return of.b.empty() ? "the cell has no zone \"" + of.a + "\" with a watched pair"
                         : "the cell watches no pair between \"" + of.a + "\" and \"" + of.b + "\"";
   }

@@ -186,7 +186,7 @@ std::optional<std::string> Posture::open_object(const Question& question) {
     if (left_out_[i] != 0) continue;
     if (present_[i] == 0 && !object.absent && object.is_seen())
       return sensor_named(object.name) +
-             "it has no frame, so that nothing is known of what it sees";
+             "it has no frame, so that nothing is known of what it sees; 'without' leaves it out";
     if (present_[i] == 0 && !object.absent) {
       return "object \"" + object.name +
              "\" has no pose: it is not fixed, so the question states it";
