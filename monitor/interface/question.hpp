@@ -58,11 +58,11 @@ struct StatedPose {
 struct SeenFrame {
   std::string sensor;  // the name of its object
   // Shows its place (SeenCloud); does not change while the question is asked.
-  std::shared_ptr<const SeenCloud> cloud;
-  Pose world_from_sensor;   // at the stamp
-  double pose_error = 0.0;  // m: no element is farther from its exact place in the world
-  double age = 0.0;         // s, from 0 on: the stamp is this long before the first waypoint
-  bool is_known = true;     // as in StatedPose
+  std::shared_ptr<const SeenCloud> cloud = {};
+  Pose world_from_sensor = {};  // at the stamp
+  double pose_error = 0.0;      // m: no element is farther from its exact place in the world
+  double age = 0.0;             // s, from 0 on: the stamp is this long before the first waypoint
+  bool is_known = true;         // as in StatedPose
 };
 
 // The motion of an object that is neither fixed nor part of a robot. Between two times its origin
