@@ -291,9 +291,9 @@ std::vector<Expectations::Broken> Expectations::finish(const Monitor& monitor,
       broken.push_back({0, last_ns,
                         never.empty() ? fmt::format("{}: no tick could be judged", subject)
                                       : fmt::format("{}: no tick could be judged, since the "
-                                                    "recording never tells {} {} {}",
+                                                    "recording never tells {} {}{}",
                                                     subject, is_seen ? "what is seen by" : "where",
-                                                    one_of(never), is_seen ? "" : "is")});
+                                                    one_of(never), is_seen ? "" : " is")});
     } else if (auto awaited = never_known(expectation, last_ns)) {
       broken.push_back(*std::move(awaited));
     } else {
