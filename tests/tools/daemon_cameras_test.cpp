@@ -274,6 +274,7 @@ TEST_F(DaemonCameras, AreRecordedSoThatAReplayMakesTheSameReports) {
   };
   std::string more = text;
   more.insert(more.find("objects: [") + 10, "{name: post, fixed: true, sphere: {radius: 0.1}}, ");
+  more.insert(more.find("pairs: [") + 8, "{between: [post, eye]}, ");
   EXPECT_THAT(replayed(more), testing::ContainsRegex("sensor 'eye': [1-9][0-9]* frames used"));
   more.replace(more.find("range: [0.3"), 11, "range: [0.4");
   EXPECT_THAT(replayed(more), testing::AllOf(testing::HasSubstr("no image that this cell can use"),
