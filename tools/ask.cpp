@@ -46,7 +46,7 @@ A motion is a JSON object:
   time_scaling  true: the largest factor by which the motion may be timed faster so that S_p of zones holds
   stoppable   true: bounds and margins count stops that begin at any instant of the motion, too, as the cell states
               stopping for its robots; time_scaling keeps the margins as well, and tries no factor above 1
-An answer has id; lower, upper: bounds of the least distance over the whole motion, m (0 where bodies overlap);
+An answer has id; without, if sensors are left out; lower, upper: bounds of the least distance over the whole motion, m (0 where bodies overlap);
 t, pair, points: where upper is attained (points in the world); for each margin a verdict, free, below or
 undecided, and first_below: null if free, {"t": [from, to], "pair"} if below. The distance is at least the margin
 at all instants before `from`, and below it at `to`. An undecided margin has "above_until" instead of [from, to].
@@ -129,6 +129,12 @@ int main(int argc, char** argv) {
        clearance::number_from_zero()},
       {"--others-still", &options.others_still,
        "Objects that are neither fixed nor part of a robot do not move"},
+      {"--without",
+       &options.without,
+       "Leave out what this sensor of the cell sees, which no motion states; repeatable. Each "
+       "answer "
+       "names it",
+       {.takes_all = true}},
       {"--stoppable", &options.stoppable,
        "Bounds and margins count stops that begin at any instant of a motion, too"},
       {"--verdicts", &options.only_verdicts,

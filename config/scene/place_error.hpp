@@ -28,6 +28,8 @@ struct RestingOn {
   Kind kind = Kind::kWorld;
   std::uint32_t object = 0;           // index into Scene::objects: a fixed one
   std::uint32_t robot = 0, link = 0;  // indices into Scene::robots and Robot::links
+
+  bool operator==(const RestingOn&) const = default;
 };
 
 }  // namespace clearance

@@ -14,6 +14,8 @@ struct ReachBall {
   Vec3 centre = Vec3::Zero();         // in the world, m; if the base stands still
   std::uint32_t robot = 0, link = 0;  // indices into Scene::robots and its links; if it moves
   double radius = 0.0;                // m
+
+  bool operator==(const ReachBall&) const = default;
 };
 
 }  // namespace clearance

@@ -125,6 +125,12 @@ struct RobotBase {
   // no frame.
   std::string frame;
   Pose frame_from_root;
+
+  friend bool operator==(const RobotBase& a, const RobotBase& b) {
+    return a.kind == b.kind && a.object == b.object && a.robot == b.robot && a.link == b.link &&
+           same_pose(a.base_from_root, b.base_from_root) && a.resting_on == b.resting_on &&
+           a.frame == b.frame && same_pose(a.frame_from_root, b.frame_from_root);
+  }
 };
 
 // A person by the skeleton of ROS4HRI. The objects of its links say whether it is there.

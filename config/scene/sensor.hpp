@@ -40,6 +40,7 @@ struct MountSpeed {
   [[nodiscard]] bool is_stated() const noexcept {
     return shift < std::numeric_limits<double>::infinity();
   }
+  bool operator==(const MountSpeed&) const = default;
 };
 
 struct Sensor {
@@ -147,6 +148,7 @@ struct Sensor {
       return 1.001 * ((1.0 + kWidestReach) * farthest + kWidestErrors * kLongestRay * error);
     return 1.001 * (farthest + kLongestRay * error + spacing * (greatest_depth + error));
   }
+  bool operator==(const Sensor&) const = default;
 };
 
 // Returns the sentences about a sensor that a person should read at the start.

@@ -67,7 +67,8 @@ bool places(const Question& question, const std::string& object) {
   return std::ranges::find(question.poses, object, &StatedPose::object) != question.poses.end() ||
          std::ranges::find(question.moving, object, &ObjectMotion::object) !=
              question.moving.end() ||
-         std::ranges::find(question.payloads, object, &Payload::name) != question.payloads.end();
+         std::ranges::find(question.payloads, object, &Payload::name) != question.payloads.end() ||
+         std::ranges::find(question.seen, object, &SeenFrame::sensor) != question.seen.end();
 }
 
 // The contacts that the tick allowed, with their ends on the clock of the waypoints.

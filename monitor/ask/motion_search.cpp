@@ -85,7 +85,17 @@ std::optional<std::string> MotionSearch::fault(const Question& question) const {
   }
   for (const MarginBetween& of : question.margins_between) {
     if (auto fault = wrong(of.margin)) return fault;
-    if (pairs_between(scene_, of.a, of.b).empty()) return why_no_pairs_between(scene_, of.a, of.b);
+    const std::vector<std::uint32_t> pairs = pairs_between(scene_, of.a, of.b);
+    const bool is_left_out = std::ranges::all_of(pairs, [&](std::uint32_t pair) {
+      return posture_.is_left_out(scene_.pairs[pair].first) ||
+             posture_.is_left_out(scene_.pairs[pair].second);
+    });
+    if (!is_left_out) continue;
+    if (!pairs.empty()) {
+      return "the margin of \"" + of.a + (of.b.empty() ? "" : "\" and \"" + of.b) +
+             "\" is of pairs that the question leaves out";
+    }
+    return why_no_pairs_between(scene_, of.a, of.b);
   }
   if (!question.profile) return std::nullopt;
   const ProfileRequest& profile = *question.profile;

@@ -11,6 +11,7 @@ void name_answer(const Answer& answer, const Question& question, const Scene& sc
                  QuestionResult& result) {
   const double end = question.motion.times.back();
   const auto name = [&](std::uint32_t object) { return object_name(scene, question, object); };
+  result.without = sensors_left_out(question);
   result.lower = answer.lower;
   result.upper = answer.upper;
   if (answer.has_pair && answer.upper < kInfinity) {

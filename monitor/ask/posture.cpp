@@ -139,7 +139,7 @@ std::optional<std::string> Posture::take_frame(const SeenFrame& frame) {
     left_out_[i] = 1;
     return std::nullopt;
   }
-  if (frame.cloud == nullptr || frame.cloud->size() == 0)
+  if (frame.cloud == nullptr || !frame.cloud->shows_place())
     return sensor_named(frame.sensor) + "its frame is empty, which is not known to be clear";
   if (!(frame.pose_error >= 0.0) || !std::isfinite(frame.pose_error))
     return sensor_named(frame.sensor) + "its pose_error is not a number from 0 on";
@@ -186,7 +186,7 @@ std::optional<std::string> Posture::open_object(const Question& question) {
     if (left_out_[i] != 0) continue;
     if (present_[i] == 0 && !object.absent && object.is_seen())
       return sensor_named(object.name) +
-             "it has no frame, so that nothing is known of what it sees";
+             "it has no frame, so that nothing is known of what it sees; 'without' leaves it out";
     if (present_[i] == 0 && !object.absent) {
       return "object \"" + object.name +
              "\" has no pose: it is not fixed, so the question states it";

@@ -58,6 +58,10 @@ class Posture {
   [[nodiscard]] bool is_seen(std::uint32_t object) const noexcept {
     return scene_.objects[object].is_seen();
   }
+  // True if the question says that nothing is known of this object, and no bound counts it.
+  [[nodiscard]] bool is_left_out(std::uint32_t object) const noexcept {
+    return left_out_[object] != 0;
+  }
   [[nodiscard]] const CloudPairs::Content& content(std::uint32_t object) const noexcept {
     return contents_[scene_.objects[object].sensor];
   }

@@ -77,11 +77,12 @@ struct QuestionResult {
   std::string client = {};
   std::uint64_t request = 0;
   QuestionStatus status = QuestionStatus::kDone;
-  std::string path = {};             // of a refusal: the offending field; empty: the question
-  std::string reason = {};           // of a refusal: a sentence
-  std::uint64_t scene_revision = 0;  // of the scene of the answer
-  std::uint64_t cycle = 0;           // joints and objects are where this tick had them
-  std::int64_t now_ns = 0;           // the time of that tick
+  std::string path = {};                  // of a refusal: the offending field; empty: the question
+  std::string reason = {};                // of a refusal: a sentence
+  std::uint64_t scene_revision = 0;       // of the scene of the answer
+  std::uint64_t cycle = 0;                // joints and objects are where this tick had them
+  std::int64_t now_ns = 0;                // the time of that tick
+  std::vector<std::string> without = {};  // sensors that the question leaves out; a daemon: none
   double lower = -kInfinite, upper = kInfinite;  // m
   double time = kNotKnown;                       // s
   std::string first = {}, second = {};

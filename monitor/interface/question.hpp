@@ -56,12 +56,13 @@ struct StatedPose {
 // The newest frame of a sensor of the cell. What it shows comes nearer by the `max_speed` of the
 // sensor's object, counted from the stamp of the frame.
 struct SeenFrame {
-  std::string sensor;                      // the name of its object
-  std::shared_ptr<const SeenCloud> cloud;  // not empty; does not change while the question is asked
-  Pose world_from_sensor;                  // at the stamp
-  double pose_error = 0.0;  // m: no element is farther from its exact place in the world
-  double age = 0.0;         // s, from 0 on: the stamp is this long before the first waypoint
-  bool is_known = true;     // as in StatedPose
+  std::string sensor;  // the name of its object
+  // Shows its place (SeenCloud); does not change while the question is asked.
+  std::shared_ptr<const SeenCloud> cloud = {};
+  Pose world_from_sensor = {};  // at the stamp
+  double pose_error = 0.0;      // m: no element is farther from its exact place in the world
+  double age = 0.0;             // s, from 0 on: the stamp is this long before the first waypoint
+  bool is_known = true;         // as in StatedPose
 };
 
 // The motion of an object that is neither fixed nor part of a robot. Between two times its origin
@@ -165,6 +166,14 @@ struct Question {
   double scaling_tolerance = 0.01;       // relative, of TimeScaling::factor
   std::uint64_t work_limit = 1'000'000;  // distance queries
 };
+
+// The names of those in `seen` that are not known: no bound counts what they see.
+[[nodiscard]] inline std::vector<std::string> sensors_left_out(const Question& question) {
+  std::vector<std::string> names;
+  for (const SeenFrame& frame : question.seen)
+    if (!frame.is_known) names.push_back(frame.sensor);
+  return names;
+}
 
 enum class Verdict : std::uint8_t { kFree, kBelow, kUndecided };
 

@@ -273,14 +273,18 @@ std::vector<Expectations::Broken> Expectations::finish(const Monitor& monitor,
                                counted(expectation.judged, "tick"));
     } else if (expectation.judged == 0) {
       std::vector<std::string> never;
+      bool is_seen = false;
       for (const std::uint32_t i : expectation.objects) {
-        if (monitor.input_age(i).age_ns < 0) never.push_back(scene_->objects[i].name);
+        if (monitor.input_age(i).age_ns >= 0) continue;
+        never.push_back(scene_->objects[i].name);
+        is_seen = is_seen || scene_->objects[i].is_seen();
       }
       broken.push_back({0, last_ns,
                         never.empty() ? fmt::format("{}: no tick could be judged", subject)
                                       : fmt::format("{}: no tick could be judged, since the "
-                                                    "recording never tells where {} is",
-                                                    subject, one_of(never))});
+                                                    "recording never tells {} {}{}",
+                                                    subject, is_seen ? "what is seen by" : "where",
+                                                    one_of(never), is_seen ? "" : " is")});
     } else if (auto awaited = never_known(expectation, last_ns)) {
       broken.push_back(*std::move(awaited));
     } else {

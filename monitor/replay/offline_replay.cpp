@@ -54,8 +54,7 @@ OfflineReplay replay_offline(const Cell& cell, const std::filesystem::path& reco
   // Another cell than that of the recording does not change with it.
   const bool is_recorded =
       outlined.catalogue && (*outlined.catalogue)->scene_revision == first.scene.revision;
-  SceneHistory history =
-      is_recorded ? SceneHistory(first, files, adapt_scene) : SceneHistory(first);
+  SceneHistory history(first, files, adapt_scene, is_recorded);
   TickFeed feed(files, history, outlined, options.tick_hz.value_or(0.0));
   return ReplayRun(history, feed, options, outlined).run(on_tick);
 }

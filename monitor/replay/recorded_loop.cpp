@@ -128,8 +128,10 @@ void RecordedLoop::take_frames(const TickInput& input) {
 // What a frame hides may depend on those before, so each one that the daemon built is built again.
 void RecordedLoop::rebuild_frames(const TickInput& input) {
   const Scene& scene = cell_->scene;
-  for (const auto& [cycle, frame] : input.frames) {
-    const bool is_shown = cycle == input.recorded->cycle;
+  for (const RecordedFrame& recorded : input.frames) {
+    const auto of_other = translated(recorded.frame);
+    const BuiltFrame& frame = of_other ? *of_other : recorded.frame;
+    const bool is_shown = recorded.cycle == input.recorded->cycle;
     const bool is_of_cell =
         frame.sensor < scene.sensors.size() && frame.scene_revision == scene.revision;
     const std::uint64_t content = is_of_cell ? names_->name(frame) : 0;
@@ -143,6 +145,17 @@ void RecordedLoop::rebuild_frames(const TickInput& input) {
     if (is_built && is_shown) blind_.erase(frame.sensor);
     if (!is_built) blind_.insert(frame.sensor);
   }
+}
+
+// The frame as one of the cell that the recording is replayed with, if that is another one.
+std::optional<BuiltFrame> RecordedLoop::translated(const BuiltFrame& frame) {
+  if (frame.scene_revision == cell_->scene.revision) return std::nullopt;
+  auto [map, is_new] = frame_maps_.try_emplace(frame.scene_revision);
+  if (is_new) {
+    if (const Cell* const recorded = history_.recorded(frame.scene_revision))
+      map->second.emplace(recorded->scene, cell_->scene);
+  }
+  return map->second ? map->second->translate(frame) : std::nullopt;
 }
 
 // A message waits while the scene changes because of the one before it.

@@ -3,12 +3,14 @@
 #pragma once
 
 #include <cstdint>
+#include <map>
 #include <memory>
 #include <optional>
 #include <set>
 #include <string>
 
 #include "monitor/inputs/scene_in_force.hpp"
+#include "monitor/replay/frame_map.hpp"
 #include "monitor/replay/moveit_changes.hpp"
 #include "monitor/replay/scene_history.hpp"
 #include "monitor/replay/tick_feed.hpp"
@@ -62,6 +64,7 @@ class RecordedLoop {
   void use(const PoseBatch& batch);
   void take_frames(const TickInput& input);
   void rebuild_frames(const TickInput& input);
+  [[nodiscard]] std::optional<BuiltFrame> translated(const BuiltFrame& frame);
   void exchange_frames_of(const Cell& cell);
   void restart(const clearance_msg_Distances& report);
   [[nodiscard]] bool begin(const DescribedScene& change);
@@ -77,6 +80,7 @@ class RecordedLoop {
   std::unique_ptr<Sensors> sensors_;
   std::optional<FrameNames> names_;  // of recorded frames
   std::unique_ptr<FrameExchange> frames_;
+  std::map<std::uint64_t, std::optional<FrameMap>> frame_maps_;  // by the recorded revision
   std::unique_ptr<TickState> state_;
   TickRecords records_{TickRecords::kNoRoom};
   std::unique_ptr<Next> next_;

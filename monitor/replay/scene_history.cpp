@@ -11,11 +11,11 @@ namespace clearance {
 SceneHistory::SceneHistory(const Cell& first) : first_(first) {}
 
 SceneHistory::SceneHistory(const Cell& first, const std::vector<std::filesystem::path>& files,
-                           std::function<void(Scene&)> adapt)
-    : first_(first),
-      described_(described_scenes(files)),
-      former_(former_scenes(files.front())),
-      adapt_(std::move(adapt)) {}
+                           std::function<void(Scene&)> adapt, bool is_recorded)
+    : first_(first), adapt_(std::move(adapt)) {
+  (is_recorded ? described_ : of_others_) = described_scenes(files);
+  if (is_recorded) former_ = former_scenes(files.front());
+}
 
 bool SceneHistory::has_changes() const noexcept {
   return std::ranges::any_of(described_, [this](const DescribedScene& scene) {
@@ -34,11 +34,16 @@ const DescribedScene* SceneHistory::next_change(std::uint64_t daemon, std::uint6
 }
 
 const Cell* SceneHistory::cell(std::uint64_t revision) {
-  if (revision == first_.scene.revision) return &first_;
+  return revision == first_.scene.revision ? &first_ : read(described_, revision);
+}
+
+const Cell* SceneHistory::recorded(std::uint64_t revision) { return read(of_others_, revision); }
+
+const Cell* SceneHistory::read(const std::vector<DescribedScene>& scenes, std::uint64_t revision) {
   if (const auto known = read_.find(revision); known != read_.end()) return known->second.get();
-  const auto described = std::ranges::find(described_.rbegin(), described_.rend(), revision,
-                                           &DescribedScene::revision);
-  if (described == described_.rend()) return nullptr;
+  const auto described =
+      std::ranges::find(scenes.rbegin(), scenes.rend(), revision, &DescribedScene::revision);
+  if (described == scenes.rend()) return nullptr;
   CellResult read = cell_of(*described);
   if (const auto* errors = std::get_if<std::vector<CellError>>(&read)) {
     error_ = errors->front().text;

@@ -20,9 +20,9 @@ class SceneHistory {
   explicit SceneHistory(const Cell& first);
   // Reads the descriptions of the recording's scenes. `first` is the cell that the replay begins
   // with, and outlives this. `adapt` sets what the replay demands of every scene, as it was done
-  // for the first one.
+  // for the first one. If the first one is another cell than the recorded ones, no change follows.
   SceneHistory(const Cell& first, const std::vector<std::filesystem::path>& files,
-               std::function<void(Scene&)> adapt);
+               std::function<void(Scene&)> adapt, bool is_recorded = true);
 
   [[nodiscard]] const Cell& first() const noexcept { return first_; }
   // Whether the recording describes other scenes than the first one.
@@ -46,11 +46,16 @@ class SceneHistory {
   // The cell of a revision, read when it is asked for first. Null: the recording does not describe
   // it, or it cannot be read, or is read as another one; then error() says why.
   [[nodiscard]] const Cell* cell(std::uint64_t revision);
+  // If the first cell is another one than the recorded ones: the recorded cell, as cell() has it
+  // otherwise.
+  [[nodiscard]] const Cell* recorded(std::uint64_t revision);
   [[nodiscard]] const std::string& error() const noexcept { return error_; }
 
  private:
+  [[nodiscard]] const Cell* read(const std::vector<DescribedScene>& scenes, std::uint64_t revision);
+
   const Cell& first_;
-  std::vector<DescribedScene> described_;
+  std::vector<DescribedScene> described_, of_others_;
   std::vector<FormerScene> former_;
   std::function<void(Scene&)> adapt_;
   std::map<std::uint64_t, std::unique_ptr<const Cell>> read_;  // by revision

@@ -39,7 +39,8 @@ std::vector<std::string> unheard_sensors(const Sensors* sensors, const Scene& sc
     if (!is_unheard(status)) continue;
     if (log == nullptr || !log->has_topics()) {
       texts.push_back(
-          fmt::format("sensor '{}': no frame of it was found for the cell that was in force last",
+          fmt::format("sensor '{}': the recording has no image that this cell can use: an image "
+                      "serves for a cell with the same entry of its sensor",
                       sensor.name));
       continue;
     }

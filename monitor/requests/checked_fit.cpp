@@ -1,6 +1,7 @@
 // How what a command attaches lies beside what it is not watched against.
 #include <fmt/format.h>
 
+#include <cmath>
 #include <span>
 #include <string>
 #include <utility>
@@ -68,10 +69,11 @@ SceneCommander::Refusal SceneCommander::check_overlaps(const Work& work, const C
               fit.distance, fit.nearest, kFarFromCarrier)};
     }
     if (fit.depth <= most) continue;
-    return CommandRefusal{CommandStatus::kOverlap, i, path,
-                          fmt::format("found that it overlaps '{}' by {:.4g} m; expected at most "
-                                      "{:.4g} m (overlap)",
-                                      fit.deepest, fit.depth, most)};
+    return CommandRefusal{
+        CommandStatus::kOverlap, i, path,
+        fmt::format("found that it overlaps '{}' by {:.4g} m; expected at most "
+                    "{:.4g} m, or an 'overlap' of {:.4g} m",
+                    fit.deepest, fit.depth, most, 1e-3 * std::ceil(1e3 * fit.depth))};
   }
   return std::nullopt;
 }

@@ -316,7 +316,7 @@ def test_threads_give_the_same_bits(planar):
 
 def test_wrong_pairs_limits_and_threads_are_named(planar):
     joints = [[0.0, 0.0]]
-    with pytest.raises(KeyError, match="'wall' and 'moon'"):
+    with pytest.raises(KeyError, match="nor a group 'moon'"):
         planar.distances(joints, pairs=[("wall", "moon")])
     with pytest.raises(ValueError, match="below: found nan"):
         planar.distances(joints, below=math.nan)

@@ -50,6 +50,20 @@ def test_margins_of_pairs_are_not_those_of_all(planar):
         planar.ask(Question(**SWING, **REST, margins=[("wall", "lowr", 0.1)]))
 
 
+def test_a_sensor_of_a_cell_that_is_not_run_may_be_left_out(planar_file):
+    sensor = "sensors: [{name: eye, depth_image: /depth, depth_error: {constant: 0.01}, range: [0.3, 4]}]\n"
+    text = planar_file.read_text().replace("pairs:\n", sensor + "pairs:\n  - {between: [arm, eye]}\n")
+    planar_file.write_text(text)
+    cell = clearance.Cell(planar_file)
+    with pytest.raises(ValueError, match="\"eye\": it has no frame, .* 'without' leaves it out"):
+        cell.ask(Question(**SWING, **REST))
+    answer = cell.ask(Question(**SWING, **REST, without=["eye"]))
+    assert answer.without == ["eye"]
+    assert answer.upper == pytest.approx(0.9, abs=1e-3) and set(answer.pair) == {"wall", "lower"}
+    with pytest.raises(ValueError, match="leaves out"):
+        cell.ask(Question(**SWING, **REST, without=["eye"], margins=[("lower", "eye", 0.1)]))
+
+
 def test_the_function_and_the_method_give_the_same_bits_in_every_thread(planar):
     question = Question(**SWING, **REST)
     first = planar.ask(question)

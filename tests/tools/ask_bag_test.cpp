@@ -236,6 +236,31 @@ TEST_F(AskOfABag, TakesWhatACameraSawBeforeTheMotion) {
   EXPECT_EQ(answers[0]["pair"], (nlohmann::json{"eye", "finger"}));
 }
 
+// Without a frame, nothing is known of what the camera sees. A question may leave it out, but not
+// ask for a margin of it then.
+TEST_F(AskOfABag, LeavesOutSensorsThatTheQuestionNames) {
+  std::string cell = read_text(path("cell.yaml"));
+  cell.replace(cell.find("pairs: ["), 8,
+               "sensors: [{name: eye, depth_image: /cam/depth, depth_error: {constant: 0.002}, "
+               "range: [0.3, 2]}]\npairs: [{between: [arm, eye]}, ");
+  write_text(path("cell.yaml"), cell);
+  const JointStateText rest{{"elbow", "push", "shoulder"}, {0.0, 0.0, -1.0}, {0.0, 0.0, 0.0}};
+  const std::vector<RosMessage> bag = {
+      joint_state(kSecondNs, kSecondNs, rest),
+      trajectory(kSecondNs, {"shoulder"}, {{0.0, {-1.0}}, {2.0, {0.6}}}),
+      joint_state(kSecondNs + 10'000'000, kSecondNs + 10'000'000, rest)};
+  const auto error = [&] { return answers.at(0).value("error", ""); };
+  EXPECT_EQ(ask(bag), 1);
+  EXPECT_NE(error().find("eye"), std::string::npos) << answers.at(0);
+  ASSERT_EQ(ask(bag, {"--without", "eye"}), 0) << output;
+  EXPECT_EQ(answers.at(0)["without"], nlohmann::json{"eye"});
+  EXPECT_NEAR(answers[0]["upper"], 0.15, 1e-6);
+  EXPECT_EQ(ask(bag, {"--without", "eye", "--margin", "finger,eye=0.05"}), 1);
+  EXPECT_NE(error().find("leaves out"), std::string::npos) << answers.at(0);
+  EXPECT_EQ(ask(bag, {"--without", "eye", "--without", "pin"}), 1);
+  EXPECT_NE(error().find("\"pin\" is fixed"), std::string::npos) << answers.at(0);
+}
+
 // The motion ends at 0.8 rad/s, 0.1 s before the shoulder would stand.
 TEST_F(AskOfABag, CountsStopsIfItsMotionsHaveToBeStoppable) {
   const std::vector<RosMessage> bag = {

@@ -265,6 +265,20 @@ TEST_F(DaemonCameras, AreRecordedSoThatAReplayMakesTheSameReports) {
   ChildProcess replay(kReplay, {"check", file, "--compare"});
   EXPECT_EQ(replay.wait(), 0) << replay.output();
   EXPECT_THAT(replay.output(), testing::HasSubstr("sensor 'eye'"));
+  // Another cell, in which objects have other numbers, uses the images of the same entry.
+  const auto replayed = [&](const std::string& changed) {
+    write_text(cell, changed);
+    ChildProcess other(kReplay, {"check", file, "--cell", cell, "--between", "ball,eye=0.001"});
+    static_cast<void>(other.wait());
+    return other.output();
+  };
+  std::string more = text;
+  more.insert(more.find("objects: [") + 10, "{name: post, fixed: true, sphere: {radius: 0.1}}, ");
+  more.insert(more.find("pairs: [") + 8, "{between: [post, eye]}, ");
+  EXPECT_THAT(replayed(more), testing::ContainsRegex("sensor 'eye': [1-9][0-9]* frames used"));
+  more.replace(more.find("range: [0.3"), 11, "range: [0.4");
+  EXPECT_THAT(replayed(more), testing::AllOf(testing::HasSubstr("no image that this cell can use"),
+                                             testing::HasSubstr("what is seen by 'eye'")));
 }
 
 // The camera falls silent, which is a fault: the file has the frames of the seconds before it.

@@ -1,5 +1,8 @@
 #include "tools/ask/answering.hpp"
 
+#include <fmt/format.h>
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <charconv>
 #include <chrono>
@@ -32,11 +35,17 @@ double percentile(std::vector<double>& sorted, double share) {
 
 Answering::Answering(const AskOptions& options)
     : options_(options),
-      report_(options.files, options.motions + " in " + options.cell, options.expected) {
+      report_(options.files,
+              fmt::format("{} in {}{}{}", options.motions, options.cell,
+                          options.without.empty() ? "" : ", without ",
+                          fmt::join(options.without, ", ")),
+              options.expected) {
   defaults_.tolerance = options.tolerance;
   defaults_.only_margins = defaults_.only_verdicts = options.only_verdicts;
   if (options.others_still) defaults_.others = OthersMove::kNot;
   defaults_.stoppable = options.stoppable;
+  for (const std::string& name : options.without)
+    defaults_.seen.push_back({.sensor = name, .is_known = false});
   if (options.files.any()) defaults_.profile.emplace();
 }
 

@@ -22,6 +22,7 @@ struct AskOptions {
   std::string cell, motions, out;
   // m, or with names: "A,B=0.05", "ZONE=0.05".
   std::vector<std::string> margins{"0", "0.01", "0.05"};
+  std::vector<std::string> without;  // sensors
   double tolerance = 1e-3;
   std::optional<double> expected;
   bool others_still = false, stoppable = false, only_verdicts = false;

@@ -252,6 +252,7 @@ Question read_question(const Json& line, const Question& defaults) {
 OrderedJson answer_line(const Answer& answer, const Scene& scene, const Question& question) {
   const Names names{scene, question};
   OrderedJson line;
+  if (const auto without = sensors_left_out(question); !without.empty()) line["without"] = without;
   line["lower"] = answer.lower;
   line["upper"] = nullptr;
   if (answer.has_pair && answer.upper < kInfinity) {

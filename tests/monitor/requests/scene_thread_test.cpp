@@ -138,13 +138,13 @@ class HeldMesh {
   int file_;
 };
 
-constexpr const char* kTetrahedron =
+constexpr const char* kObjTetrahedron =
     "v 0 0 0\nv 0.1 0 0\nv 0 0.1 0\nv 0 0 0.1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
 
 TEST_F(SceneThreadTest, CommandsOfOthersOvertakeOneWhoseMeshIsBeingRead) {
   begin();
   std::filesystem::create_directories(folder / "allowed");
-  test::write_text(folder / "allowed" / "a.obj", kTetrahedron);
+  test::write_text(folder / "allowed" / "a.obj", kObjTetrahedron);
   auto held = std::make_unique<HeldMesh>(folder / "allowed" / "a.obj");
   std::vector<std::string> order;  // by the scene thread alone, until all have answered
   const auto put_named = [&](const std::string& name, Command command) {
@@ -176,7 +176,7 @@ TEST_F(SceneThreadTest, CommandsOfClientsOvertakeAnOwnOneWhoseMeshIsBeingRead) {
   text.insert(text.find("\npairs:") + 1,
               "  - {name: m, groups: [things], fixed: true, pose: {xyz: [3, 0, 0]}, mesh: {file: "
               "a.obj}}\n");
-  test::write_text(folder / "a.obj", kTetrahedron);
+  test::write_text(folder / "a.obj", kObjTetrahedron);
   auto held = std::make_unique<HeldMesh>(folder / "a.obj");
   std::vector<std::string> order;  // by the scene thread alone, until all have answered
   const auto answer_as = [&](const std::string& name) {
@@ -224,7 +224,7 @@ TEST_F(SceneThreadTest, AMeshThatIsNoneIsRefusedOnceItWasRead) {
   put({.client = "planner",
        .request = 4,
        .changes = {add("\"sent:c.obj\"")},
-       .files = {{"c.obj", kTetrahedron}}},
+       .files = {{"c.obj", kObjTetrahedron}}},
       sent);
   await(4);
   EXPECT_TRUE(sent.done()) << sent.reason;

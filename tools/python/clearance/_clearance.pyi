@@ -587,6 +587,7 @@ class Question:
         time_scaling: bool = ...,
         stoppable: bool = ...,
         work_limit: int = ...,
+        without: Sequence[str] = ...,
     ) -> None: ...
 
 class MarginAnswer:
@@ -633,6 +634,8 @@ class MotionAnswer:
     def cycle(self) -> int: ...
     @property
     def now_ns(self) -> int: ...
+    @property
+    def without(self) -> List[str]: ...
     @property
     def lower(self) -> float: ...
     @property

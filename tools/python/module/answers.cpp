@@ -127,6 +127,8 @@ void add_motion_answer(py::module_& module, py::handle status_type) {
       .def_readonly("cycle", &QuestionResult::cycle,
                     "Of a daemon: joints and objects are where this tick had them.")
       .def_readonly("now_ns", &QuestionResult::now_ns, "Of a daemon: the time of that tick.")
+      .def_readonly("without", &QuestionResult::without,
+                    "Names of the sensors that the question leaves out.")
       .def_readonly("lower", &QuestionResult::lower,
                     "m: no distance of a watched pair is smaller at any instant.")
       .def_readonly("upper", &QuestionResult::upper,

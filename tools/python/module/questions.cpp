@@ -132,7 +132,7 @@ Question question_of(
     const std::vector<py::object>& margins, double tolerance, bool only_margins,
     std::uint32_t profile, double profile_tolerance,
     const std::optional<std::pair<std::string, std::string>>& profile_pair, bool time_scaling,
-    bool stoppable, std::uint64_t work_limit) {
+    bool stoppable, std::uint64_t work_limit, const std::vector<std::string>& without) {
   Question question;
   question.motion = trajectory_of(joints, times, positions, velocities);
   for (const py::tuple& each : beside) {
@@ -178,6 +178,8 @@ Question question_of(
   question.time_scaling = time_scaling;
   question.stoppable = stoppable;
   question.work_limit = work_limit;
+  for (const std::string& sensor : without)
+    question.seen.push_back({.sensor = sensor, .is_known = false});
   return question;
 }
 
@@ -258,6 +260,7 @@ void add_question(py::module_& module) {
           py::arg("tolerance") = 1e-3, py::arg("only_margins") = false, py::arg("profile") = 0,
           py::arg("profile_tolerance") = 5e-3, py::arg("profile_pair") = py::none(),
           py::arg("time_scaling") = false, py::arg("stoppable") = false, py::arg("work_limit") = 0,
+          py::arg("without") = std::vector<std::string>(),
           R"(joints: names of k joints. times: (n,), s, increasing. positions: (n, k), rad or m; joints move
 linearly between waypoints. velocities: (n, k), per second; then along cubic polynomials.
 
@@ -281,7 +284,8 @@ profile_pair: names of two objects; None: the least distance. time_scaling: asks
 may be timed faster for zones with `separation`. stoppable: bounds and margins count stops that begin at
 any instant of the motion, too, as the cell states `stopping` for its robot; time_scaling then keeps the
 margins as well, and tries no factor above 1. work_limit: most distance queries; 0: 1,000,000, or that of
-the daemon.
+the daemon. without: names of sensors of the cell, what they see is left out; a cell that is not run
+has no frames. A daemon has them, and refuses it.
 
 Raises TypeError and ValueError for wrong shapes; names and values are checked when it is asked.)")
       .def("__repr__", [](const Question& q) {
