@@ -70,7 +70,7 @@ void ObjectPartsReader::read_part(const YamlNode& node, std::size_t place, Objec
 }
 
 // A moving object must be bounded: the broad phase and the bounds between two ticks enclose it in a
-// sphere. The shape is no value, since a caller reads its kind for `name`, in any order.
+// sphere. `shape` is a reference: a caller reads its kind for `name`, and arguments have any order.
 void ObjectPartsReader::add_part(const YamlNode& node, NamedShape&& shape, const std::string& name,
                                  const Pose& pose, Object& object) {
   mesh_error_ = std::max(mesh_error_, shape.mesh_error);

@@ -172,7 +172,7 @@ void RobotReader::allow(const RobotKeys& keys, const RobotDescription& descripti
     objects[name] = link.object;
   }
   note_visuals(description.robot, robot.notes);
-  std::vector<std::string> expected;  // a person has no SRDF: this is no news
+  std::vector<std::string> expected;  // not shown: a person has no SRDF
   std::vector<std::string>& notes = keys.person_node != nullptr ? expected : robot.notes;
   const std::vector<SrdfDisabled> pairs =
       description.srdf ? exceptions_of(*description.srdf, shaped, fixed, robot.notes)

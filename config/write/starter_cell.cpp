@@ -16,7 +16,7 @@ constexpr double kBetweenRobots = 0.6;
 constexpr double kTableTop = 0.75, kTableThickness = 0.05;
 constexpr double kTableBack = -0.4, kTableFront = 0.8, kTableBeside = 0.5;
 constexpr double kAboveTable = 0.05;  // the lowest moving link, where the zone `stop` is clear
-constexpr double kMachineAway = 0.2, kPersonAway = 2.0;  // from reach, and from the back
+constexpr double kMachineAway = 0.2, kPersonAway = 2.0;  // beyond reach; behind the back
 constexpr double kCameraBeside = 2.0, kCameraHigh = 2.2;
 
 std::string quoted(const std::string& text) {

@@ -119,8 +119,9 @@ struct ConePoint {
 // the normal, 3 for their product, and 16 for the normal's component along the segment. If the cone
 // is B, the rotation's error moves the segment as well.
 inline constexpr double kUlpsOfPlacedSegment = 30;
-// The same in ulps of the cone's bounding radius, for the normal of a side that is nearest to a
-// point inside: 1 for its direction, which twice that radius multiplies, and 3 for the product.
+// For the normal of a side that is nearest to a point inside, in ulps of the cone's bounding
+// radius. Its direction is off by 1, which twice that radius multiplies. The product has 3, and 3
+// are to spare.
 inline constexpr double kUlpsOfSide = 8;
 // Nearer to the axis, the square of the distance from it loses digits, m.
 inline constexpr double kBesideAxis = 1e-100;
@@ -183,7 +184,8 @@ HWY_INLINE bool segment_and_cone_distance(const ConvexBody& a, const ConvexBody&
       (kUlpsOfPlacedSegment * kUlp + (kConeIsA ? 0.0 : kRoundedUp * a_from_b.rotation_error)) *
           (segment.bounding_radius + offset) +
       (may_be_inside ? kUlpsOfSide * kUlp * cone.bounding_radius : 0.0);
-  // Beside a rim or an apex, a point outside may be farther than from each plane.
+  // Demands a depth beyond the error: near a rim or an apex, a point outside may be farther from
+  // the cone than from each plane.
   const bool is_inside = may_be_inside && found.upper < -2.0 * found.error;
   if (HWY_UNLIKELY(!known && !is_inside)) return false;
   found.size = size;

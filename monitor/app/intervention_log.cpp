@@ -26,7 +26,7 @@ using nlohmann::ordered_json;
 
 // The pause between two attempts to write.
 constexpr std::chrono::seconds kPause{1};
-// What a line keeps of a line that was not whole.
+// Bytes of a torn line that its successor keeps.
 constexpr std::size_t kMostTorn = 1000;
 
 constexpr std::array kInterventions = {lines::kReading.code,         lines::kSceneRefused.code,
@@ -86,7 +86,7 @@ InterventionLog::~InterventionLog() {
   if (descriptor_ >= 0) ::close(descriptor_);
 }
 
-// A second program would write a second line after the same one.
+// Locks the file: two programs would both follow the same line.
 void InterventionLog::open() {
   constexpr int kMode = 0640;
   descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | O_NONBLOCK, kMode);
@@ -157,7 +157,7 @@ void InterventionLog::run() {
   news_.notify_all();
 }
 
-// Whoever cuts the log off while it is written would hide that behind the next line.
+// Names a change by another program: the next line would hide that the log was cut.
 std::string InterventionLog::changed_by_others() const {
   struct stat ours {
   }, named{};
@@ -170,7 +170,7 @@ std::string InterventionLog::changed_by_others() const {
                      size_);
 }
 
-// A line that was written in part goes again.
+// Removes what was written of a line if it fails, so that run() can write it again.
 std::string InterventionLog::write(const Entry& entry, std::uint64_t left_out) {
   ChainEnd end = end_;
   std::string text;

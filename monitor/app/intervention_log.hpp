@@ -25,8 +25,9 @@ class InterventionError : public std::runtime_error {
 };
 
 // A thread of its own writes the lines, so that no other waits for the disk. Lines that find kMost
-// others waiting are left out, and the next line counts them. A full disk is tried again each
-// second. A file that another program has changed, moved or deleted gets no more lines.
+// others waiting are left out, and the next line counts them. If the disk is full, the thread
+// tries again each second. A file that another program has changed, moved or deleted gets no more
+// lines.
 //
 // While it lives, log lines that tell of an intervention (is_intervention()) go into it, too.
 class InterventionLog {

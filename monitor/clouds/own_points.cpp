@@ -21,8 +21,8 @@ RelativePose moved_to(const Vec3& p, const RelativePose& pose) noexcept {
   return at;
 }
 
-// Samples an element before it is shelved. Its points are within the radius of its centre, where
-// the point is.
+// Samples an element before it is shelved. `at` places the element's centre, and all of its points
+// are within `radius` of it.
 void sample(const ConvexBody& part, const ConvexBody& point, const RelativePose& at, double radius,
             double depth, BlindShell& blind) noexcept {
   if (std::isnan(depth) || blind.elements % kSampled != 0) return;

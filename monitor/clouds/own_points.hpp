@@ -19,8 +19,8 @@ struct BlindShell {
   std::size_t elements = 0;
   double thickness = 0.0;  // m: no point of a shelved element is farther from the part
   double shell = 0.0;      // m: the widest that shelved one
-  // Of every kSampled-th shelved element: how many there are, and how many lie so deep in the part
-  // that the sensor has seen through its surface (CentreLimit::depth).
+  // Of every kSampled-th shelved element: their number, and the number of those that are deep, so
+  // that the sensor has seen through the part's surface (CentreLimit::depth).
   std::size_t sampled = 0, deep = 0;
   // A box of the cloud's frame that contains the shelved elements, m; low > high: none were.
   Vec3 low = Vec3::Constant(kInfinity), high = Vec3::Constant(-kInfinity);
@@ -47,8 +47,8 @@ struct CentreLimit {
   double most = kInfinity;  // m, >= the shell: the points of the part itself are within this of it
   DepthError error;
   bool along_ray = false;  // depth is the distance from the sensor, not z
-  // An element that reaches deeper than this and the shell into the part is deep, m. NaN: elements
-  // are not sampled.
+  // An element is deep if all of it lies deeper in the part than this and the shell, m. NaN: no
+  // element is sampled.
   double depth = std::numeric_limits<double>::quiet_NaN();
 };
 

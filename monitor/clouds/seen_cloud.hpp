@@ -52,7 +52,7 @@ class SeenCloud {
   // False: nothing shows that the place is clear. An empty cloud shows it if what was left out were
   // bodies that the caller knows, at their places.
   [[nodiscard]] bool shows_place() const noexcept { return size() > 0 || shows_known_; }
-  // As after a build: it does not.
+  // False after a build.
   void note_known(bool shows_known) noexcept { shows_known_ = shows_known; }
 
   // `body` is scratch memory of the caller. Without elements, the answer is kEmpty, and only what

@@ -43,7 +43,7 @@ struct DaemonOptions {
   std::filesystem::path record_file;  // empty: no recording
   RecordingOptions recording = {.overwrite = false};
   InterventionLog* interventions = nullptr;  // outlives the daemon; null: there is none
-  std::vector<std::string> command_line;     // for it
+  std::vector<std::string> command_line;     // for that log
   std::optional<int> cpu;                    // processor that the tick thread is pinned to
   std::int64_t ahead_ns = 0;                 // TickLoopOptions::ahead_ns; no effect with a partner
   CommanderOptions commander;                // how commands and SIGHUP change the cell

@@ -5,7 +5,7 @@
 //   {"number":7,"time":"2026-11-28T10:45:12.003512Z","before":"HASH","kind":"stop",...,"hash":"HASH"}
 // `hash` is the SHA-256 of the line up to the comma in front of it, and `before` the hash of the
 // line before: 64 zeros in the first one. Whoever writes all lines anew can forge the log. A hash
-// of it that is kept elsewhere then shows that.
+// that is kept elsewhere shows it.
 #pragma once
 
 #include <cstdint>

@@ -196,8 +196,8 @@ std::string where_joined(const DdsOptions& options, const Domain& domain) {
                      own_settings().empty() ? "" : ", then CYCLONEDDS_URI");
 }
 
-// The proposed settings leave out datagram sizes, which clients need not share. Our own programs
-// have the settings of an interface by its name.
+// Proposes settings without datagram sizes, which clients need not share. For our own programs, the
+// name of the interface is enough.
 std::string how_to_reach(const DdsOptions& options, std::uint32_t domain) {
   const std::string on = fmt::format("in domain {} (ROS_DOMAIN_ID)", domain);
   const std::string who = who_reaches(options);

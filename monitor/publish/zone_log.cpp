@@ -14,7 +14,7 @@ namespace {
 // The most zones whose flickering is told at once; the others are counted together.
 constexpr std::uint64_t kZonesAtOnce = 5;
 
-// The second figure is told if the pair may have been nearer between the two ticks.
+// Adds the clearance between the two ticks where it is printed differently.
 std::string clearance_text(const ZoneReport& zone) {
   const std::string now = fmt::format("{:.3f}", zone.clearance);
   const std::string between = fmt::format("{:.3f}", zone.swept_clearance);

@@ -20,7 +20,7 @@ std::vector<std::uint32_t> by_name(const std::vector<Thing>& recorded,
   return found;
 }
 
-// Both number what carries the sensor in their own scene, and the crop follows from robots.
+// Leaves out indices, which differ between scenes, and the crop, which follows from robots.
 bool same_entry(const Sensor& recorded, const Sensor& now) {
   const auto of_itself = [](Sensor sensor) {
     sensor.object = sensor.mount.object = sensor.mount.robot = sensor.mount.link = 0;

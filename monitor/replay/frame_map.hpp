@@ -1,4 +1,4 @@
-// Frames of a recording's sensors as frames of another cell, which the recording is replayed with.
+// Images of a recording's sensors as images of another cell, with which the recording is replayed.
 #pragma once
 
 #include <optional>
@@ -10,8 +10,8 @@
 
 namespace clearance {
 
-// Sensors, joints, objects and robots are found again by their names. A frame is of use if the cell
-// has its sensor with the same entry, and what carries the sensor is placed as it was recorded. A
+// Sensors, joints, objects and robots are found again by their names. An image is used if the cell
+// has the same entry for its sensor, and its carrier is placed as recorded. A
 // joint or object that the recording lacks is unknown, so that it hides nothing.
 class FrameMap {
  public:

@@ -27,7 +27,7 @@ bool counts(const PairReport& pair, const Report& report) {
 
 }  // namespace
 
-// A pair is queried only where it may be nearer than all before. A zone has its own clearance.
+// Queries a pair only where it may be the nearest so far; a zone reports its own clearance.
 void Expectations::note_least(Expectation& expectation, const Tick& tick) const {
   const auto note = [&](double least, std::string text) {
     expectation.least = least;

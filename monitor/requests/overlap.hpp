@@ -38,7 +38,7 @@ inline constexpr double kFarFromCarrier = 0.5;
 
 // How an attached object lies beside what it is not watched against.
 struct Fit {
-  // Names; empty: it overlaps none that it may not touch by an SRDF, or none has a known distance.
+  // Names. Empty: it has no forbidden overlap, or no known distance.
   std::string deepest, nearest;
   double depth = 0.0;           // m, of the overlap with `deepest`
   double distance = kInfinity;  // m, from `nearest`, at most; 0 if they overlap

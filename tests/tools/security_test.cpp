@@ -182,7 +182,7 @@ class ForgedInputs : public SecuredCell {
     })) << daemon->output();
     forged.emplace(poses->writer());
   }
-  // Of the cart and the pin in the next report, rounded; -1: not known.
+  // The distance of the cart and the pin in the next report, to 1 um; below 0: none.
   double distance() {
     const auto report = reports->next();
     if (report == nullptr) return -2.0;

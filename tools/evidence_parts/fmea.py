@@ -1,7 +1,7 @@
 """Faults as cause, effect, detection, time, reaction and test: the rows of monitor/FAULTS.md, with times of a run."""
 import re
 
-# The columns of FAULTS.md by what they are here. The first that a table has counts.
+# Titles of columns in FAULTS.md by their meaning here; the first match counts.
 COLUMNS = {
     "detection": ("code", "CAUSE", "code, or the line", "code, or what you see", "code of the line, or status",
                   "message", "the line says", "the line"),

@@ -1,6 +1,6 @@
 // Persons of a cell as a tracker of ROS4HRI tells of them (idl/PEOPLE.md): upright, with arms down.
 // They stand or walk where a mover of the cell's simulation has their frame, body_ID. Where the
-// cell reads lists of bodies, they are told as other bodies: no body may have the name of a robot.
+// cell reads lists of bodies, their ids differ from the names of robots.
 #pragma once
 
 #include <cstddef>

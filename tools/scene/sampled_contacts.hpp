@@ -1,5 +1,5 @@
-// Samples which links of a robot touch each other, in random positions of its joints, how far they
-// come, and how far they extend at zero.
+// Samples which links of a robot touch each other in random positions of its joints, how far they
+// reach along x, and their boxes while all joints are at 0.
 #pragma once
 
 #include <cstdint>

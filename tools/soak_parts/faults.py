@@ -107,7 +107,7 @@ class FutureSource(OfSource):
 
 
 class BehindSource(OfSource):
-    """A stamp that is older than the last one by more than the age limit contradicts it, until all that come are as old."""
+    """Stamps half a second old. They count as late, or contradict the newer ones."""
     lie, codes = "behind", ("joints-late", "poses-late")
 
     def note(self):
@@ -139,6 +139,7 @@ class KilledDaemon(Fault):
 
     def begin(self):
         self.of = self.run.daemons()[0]
+        self.run.until(lambda: not self.run.fail_safe)
         self.run.end(self.of, signal.SIGKILL)
 
     def shows(self):
@@ -155,6 +156,7 @@ class StoppedDaemon(Fault):
     def begin(self):
         self.of = self.run.daemons()[0]
         self.skipped = self.run.health.get("skipped_cycles", 0)
+        self.run.until(lambda: not self.run.fail_safe)
         self.run.living[self.of].send(signal.SIGSTOP)
         self.is_stopped = True
 

@@ -4,7 +4,7 @@ import collections, math
 import numpy as np
 
 ROUNDING = 1e-9  # m
-SPREAD_SPEED = 20.0  # m/s, of no point of these robots: where links of a robot rest on positions of different ages
+SPREAD_SPEED = 20.0  # m/s, faster than any point of these robots: links may rest on positions of different ages
 STALE, UNKNOWN = 5, 6
 MOST_DESCRIPTORS, MOST_MB = 4, 32.0  # that a daemon may have more of at the end than at the beginning
 

@@ -116,8 +116,8 @@ void LiveSource::take_all(std::int64_t steady_ns) {
   take_from_ros({.realtime_ns = SystemClock().realtime_ns(), .monotonic_ns = steady_ns});
 }
 
-// The first call waits for a report and for the poses of it. Of a daemon that is silent, nothing is
-// known.
+// Waits, in its first call, for a report and its poses. If the daemon is silent, the answer is that
+// nothing is known.
 std::string LiveSource::distance(std::uint32_t a, std::uint32_t b) {
   SystemClock clock;
   watched_ns_ = clock.monotonic_ns();

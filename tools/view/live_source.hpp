@@ -30,7 +30,7 @@ class LiveSource final : public Source {
 
   // What is attached is known with the first catalogue.
   [[nodiscard]] nlohmann::json parameters() const override;
-  // A program may ask while there is no viewer. What a viewer would be shown is taken for it.
+  // Answers without a viewer, too: reads the topics as if one were there.
   [[nodiscard]] std::string distance(std::uint32_t a, std::uint32_t b) override;
   [[nodiscard]] std::string sensors() const override;
 

@@ -21,7 +21,7 @@ namespace clearance::test::lies {
 using Detected = std::map<std::string, std::int64_t>;
 
 // Follows the inputs of one fault's channel. A fault that strikes no input, as a command does not,
-// is never noticed.
+// gets no time.
 class Detection {
  public:
   Detection(const Scene& scene, const Fault& fault);

@@ -1,5 +1,5 @@
-// The one rule by which a sample is taken or refused, for all that a sample and its input can be;
-// and what bytes of a state elsewhere may say of an input.
+// The rule that accepts or refuses a sample, for all samples and inputs; and which bytes of a state
+// it refuses.
 #include "monitor/inputs/input_record.hpp"
 
 #include <gtest/gtest.h>
@@ -34,7 +34,7 @@ struct Case {
   }
 };
 
-// As a pose or a position, but for its answers.
+// Stands in for a pose or a position; its answers are those of the case.
 struct HeardPose {
   const Case& of;
   bool is_used = false;
