@@ -135,6 +135,7 @@ bool TrackedObject::is_sound(const TrackedObject& own) const noexcept {
       are_flags(twist_known, follows_joints, joints_late, joints_contradicted,
                 pose_last_tick_known);
   const bool bounds = may_have_moved >= 0.0 && unobserved >= 0.0 && displacement >= 0.0 &&
+                      (!input.has_value || may_have_moved <= unobserved) &&
                       accumulated_last_tick >= 0.0 && accumulated >= accumulated_last_tick &&
                       accumulated < kInfinity && bend >= 0.0 && accumulated_turn >= 0.0 &&
                       accumulated_turn < kInfinity && unobserved_by_joints >= 0.0 &&
