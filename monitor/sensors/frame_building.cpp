@@ -108,7 +108,7 @@ FrameFault Sensors::build_at(State& state, const Waiting& frame, const PastPose&
                    .message = frame.message});
   }
   leave_out(state, frame, place, cloud);
-  if (!cloud.shows_place()) return FrameFault::kNothingSeen;
+  if (cloud.size() == 0) return FrameFault::kNothingSeen;
   if (state.payloads) {
     state.payloads->look(*cloud.depth(), place, postures_, state.robots, frame.stamp_ns);
     state.status.payloads = state.payloads->all();
@@ -273,7 +273,6 @@ void Sensors::leave_out(State& state, const Waiting& frame, const PastPose& plac
     state.status.hidden = state.persistence->hide(
         cloud, place.world_from_body, place.error(sensor.extent()), frame.stamp_ns, unseen);
     for (DepthCloud& each : unseen) each.refit();
-    if (!state.persistence->is_filled()) cloud.note_known(false);
   }
   own_image_.find_unseen(sensor, place, postures_, cloud, body_);
   if (DepthCloud* const depth = cloud.depth()) {

@@ -73,7 +73,6 @@ void OwnImage::leave_out(const Sensor& sensor, bool along_ray, const PastPose& p
   }
   cloud.hidden().clear();
   cloud.trust_shells(sensor.trusted_shell);
-  BlindShell known;
   for (const Body& each : bodies_) {
     HiddenNear& near = cloud.hidden().emplace_back();
     near.object = each.object;
@@ -87,8 +86,6 @@ void OwnImage::leave_out(const Sensor& sensor, bool along_ray, const PastPose& p
       const double shell = std::min(sensor.most_shell, rounded_up(sensor.own_shell + error));
       // The distance of an organised point to its neighbours says nothing about whose image it is.
       limit.most = sensor.by_neighbours ? shell : sensor.most_shell;
-      limit.depth = each.robot == kNone ? scene_.objects[each.object].mesh_error
-                                        : std::numeric_limits<double>::quiet_NaN();
       const RelativePose part_from_cloud = relative_pose(world_from_part, place.world_from_body);
       const BlindShell blind = cloud.shelve(part.shape, part_from_cloud, shell, limit, body);
       for (std::uint32_t group = 0; places != nullptr && group < places->others.size(); ++group) {
@@ -97,12 +94,10 @@ void OwnImage::leave_out(const Sensor& sensor, bool along_ray, const PastPose& p
               shelve_own_points(part.shape, part_from_cloud, shell, places->others[group], body));
       }
       near.shell.add(blind);
-      if (each.robot == kNone) known.add(blind);
       if (blind.elements > 0)
         near.shell.thickness = std::max(near.shell.thickness, rounded_up(blind.thickness + error));
     }
   }
-  cloud.note_known(2 * known.deep < known.sampled);
   for (std::size_t group = 0; group < unseen(sensor).size(); ++group) {
     places->clouds[group].leave_out_behind(
         *cloud.depth(), places->others.empty() ? nullptr : &places->others[group]);
