@@ -193,8 +193,6 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   if (simulation_node != nullptr)
     cell.simulation = read_simulation(*simulation_node, list, quantities);
   cell.scene.pairs = std::move(pairs.pairs);
-  for (const auto& [key, line] : robots.may_touch)
-    cell.scene.may_touch.emplace_back(first_of(key), second_of(key));
   cell.scene.objects = std::move(list.objects);
   cell.scene.sensors = sensors.sensors;
   cell.scene.robots = std::move(robots.robots);

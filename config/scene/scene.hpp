@@ -8,7 +8,6 @@
 #include <limits>
 #include <optional>
 #include <string>
-#include <utility>
 #include <vector>
 
 #include "config/scene/contact.hpp"
@@ -133,9 +132,6 @@ struct Scene {
   std::vector<Robot> robots;
   std::vector<JointVariable> variables;  // of all robots
   std::vector<ObjectPair> pairs;
-  // Pairs of objects that may touch by an SRDF or a matrix of MoveIt, also where they are rigidly
-  // connected.
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> may_touch;
   std::vector<Zone> zones;
   std::vector<AllowedContact>
       contacts;  // their pairs are published, and in no zone with `separation`

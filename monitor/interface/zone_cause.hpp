@@ -11,7 +11,7 @@
 namespace clearance {
 
 // The inputs that place an object. A link of a robot that is driven by joints has joint states, not
-// poses, and what a sensor sees has frames.
+// poses, and what a sensor sees has images.
 enum class PlacedBy { kPoses, kJointStates, kEither, kFrames };
 
 // "poses of hand".
@@ -24,7 +24,7 @@ enum class PlacedBy { kPoses, kJointStates, kEither, kFrames };
     case PlacedBy::kEither:
       return "poses or joint states of " + object;
     case PlacedBy::kFrames:
-      return "frames of " + object;
+      return "usable images of " + object;
   }
   return object;
 }

@@ -55,15 +55,6 @@ double distance_of(const Object& a, const Object& b, const Pose& a_from_object_b
   return least;
 }
 
-// An SRDF lets the two touch at any depth.
-bool may_touch(const Scene& scene, const std::string& a, const std::string& b) {
-  return std::ranges::any_of(scene.may_touch, [&](const auto& pair) {
-    const std::string &first = scene.objects[pair.first].name,
-                      &second = scene.objects[pair.second].name;
-    return (first == a && second == b) || (first == b && second == a);
-  });
-}
-
 // A frame without a shape.
 Object origin_named(const std::string& name) {
   Object origin;
@@ -160,7 +151,7 @@ Fit fit_of(const Attach& change, const Scene& scene, const std::vector<std::stri
     }
     const double apart = distance_of(*other, *attached, other_from_object);
     const double depth = -apart - error_of(name) - error_of(change.object);
-    if (depth > fit.depth && !may_touch(scene, change.object, name)) {
+    if (depth > fit.depth) {
       fit.deepest = name;
       fit.depth = depth;
     }

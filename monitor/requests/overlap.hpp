@@ -38,10 +38,9 @@ inline constexpr double kFarFromCarrier = 0.5;
 
 // How an attached object lies beside what it is not watched against.
 struct Fit {
-  // Names. Empty: it has no forbidden overlap, or no known distance.
-  std::string deepest, nearest;
-  double depth = 0.0;           // m, of the overlap with `deepest`
-  double distance = kInfinity;  // m, from `nearest`, at most; 0 if they overlap
+  std::string deepest, nearest;  // names; empty: it overlaps none, or none has a known distance
+  double depth = 0.0;            // m, of the overlap with `deepest`
+  double distance = kInfinity;   // m, from `nearest`, at most; 0 if they overlap
 };
 
 // Compares an object with these. `poses` has the poses of the others and of the carrier in this

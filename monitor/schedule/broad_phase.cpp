@@ -182,7 +182,8 @@ bool BroadPhase::cull(std::uint32_t pair, double lower) noexcept {
   const auto [a, b] = ends(pair);
   const Body& body_a = bodies_[a];
   const Body& body_b = bodies_[b];
-  const double allowance = lower - level_of(pair);  // s, at most L - max(H, Z) - U
+  // s, at most L - max(H, Z) - U; the last term is for its rounding where L is large.
+  const double allowance = lower - level_of(pair) - 0x1p-51 * std::abs(lower);
   const double usual = usual_displacement_[a] + usual_displacement_[b];
   if (!(allowance >= kLeastAllowance + kLeastTicks * usual)) return false;
   CLEARANCE_INVARIANT(lower - allowance >= level(pair, horizon_));

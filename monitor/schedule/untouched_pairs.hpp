@@ -33,7 +33,9 @@ struct UntouchedPairs {
   // wide.
   [[nodiscard]] Clearance all() const noexcept {
     const Clearance waits = waiting();
-    return {.now = std::min(horizon, waits.now), .since = std::min(horizon, waits.since)};
+    // A discontinuity has no path: its object may have been anywhere since the last tick.
+    const double between = most_displaced < kInfinity ? horizon : -kInfinity;
+    return {.now = std::min(horizon, waits.now), .since = std::min(between, waits.since)};
   }
 
  private:

@@ -44,7 +44,6 @@ void ConstantMemory::add(const Scene& scene) {
   (*this)("sensors", scene.sensors);
   (*this)("joint variables", scene.variables);
   (*this)("pairs", scene.pairs);
-  (*this)("pairs that may touch", scene.may_touch);
   (*this)("zones", scene.zones);
   (*this)("contacts", scene.contacts);
   (*this)("robots", std::span<const Robot>(scene.robots));

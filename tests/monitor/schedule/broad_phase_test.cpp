@@ -51,6 +51,24 @@ TEST(BroadPhase, SaysSoWhenNotEveryPairHasBeenLookedAt) {
   EXPECT_GT(monitor.tick({}, kStart).lower_all, 0.0);
 }
 
+// The bound of a pair that is 1e8 m apart is rounded by more than a nanometre.
+TEST(BroadPhase, CullsPairsThatAreHoweverFarApart) {
+  std::vector<Object> objects;
+  for (int i = 0; i < 3; ++i) objects.push_back(test::moving("ball", {test::ball(0.1)}));
+  const Scene scene = test::cell_of(std::move(objects));
+  Monitor monitor(scene);
+  Random random(5);
+  for (int t = 0; t < 200; ++t) {
+    const std::int64_t now = kStart + t * kTick;
+    const double x = random.log_uniform(1e3, 9e8);
+    const std::vector samples{test::sample(0, test::at(0, 0, 0), now),
+                              test::sample(1, test::at(0.3, 0, 0), now),
+                              test::sample(2, test::at(x, 0.1, 0.3), now)};
+    const Report& report = monitor.tick(samples, now);
+    EXPECT_LE(report.lower_all, 0.1 + 1e-9) << t;
+  }
+}
+
 // A third object, which is far away, is not observed for up to 50 ms: it may have moved 0.1 m.
 TEST(BroadPhase, AnUnobservedObjectFarAwayMakesTheBoundOfAllPairsNoWider) {
   std::vector<Object> objects;

@@ -18,6 +18,12 @@ TEST(UntouchedPairs, AreNoNearerThanTheHorizonWhateverIsNotObservedOfOthers) {
   EXPECT_EQ(untouched.waiting().now, kInfinity) << "no pair waits";
 }
 
+TEST(UntouchedPairs, MayHaveBeenAnywhereBetweenTwoTicksAfterADiscontinuity) {
+  const UntouchedPairs untouched{.any = true, .horizon = 0.5, .most_displaced = kInfinity};
+  EXPECT_EQ(untouched.all().now, 0.5);
+  EXPECT_EQ(untouched.all().since, -kInfinity);
+}
+
 TEST(UntouchedPairs, ThatWaitAreNoNearerThanTheirBoundLessTheUnobservedMotionOfAnyTwo) {
   const UntouchedPairs untouched{.any = true,
                                  .horizon = 0.5,

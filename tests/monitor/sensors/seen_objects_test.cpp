@@ -222,7 +222,7 @@ TEST_F(SeenObjects, AreACauseByDistanceWhileTheirFrameIsOnTimeAndLateOnceItIsNot
   const ZoneReport late = zone();
   EXPECT_EQ(late.cause, ZoneCause::kLate);
   EXPECT_EQ(late.cause_object, kSeen);
-  EXPECT_EQ(cause_text(scene, late), "frames of seen are late");
+  EXPECT_EQ(cause_text(scene, late), "usable images of seen are late");
 }
 
 TEST_F(SeenObjects, TakeNoPosesFromOthersAndNoFramesOutOfOrder) {
