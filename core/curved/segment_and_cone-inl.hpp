@@ -96,7 +96,7 @@ struct ConePoint {
     on_cone = vec4(part * x, part * y, closest.height, 0.0);
     outward = vec4(scale * x, scale * y, normal.height, 0.0);
   }
-  // How far the point is beyond the cone along the normal, m.
+  // The distance of the point beyond the cone along the normal, m; below 0 inside.
   HWY_INLINE double along_normal(const std::array<Disc, 2>& discs) const {
     const Section& n = section.normal;
     const auto support = [&](const Disc& disc) HWY_ATTR {

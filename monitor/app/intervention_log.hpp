@@ -1,4 +1,4 @@
-// What people and other programs did to a running program, in a file of its own whose lines are
+// The log of what people and other programs did to a running program: a file whose lines are
 // chained (monitor/files/chained_log.hpp).
 #pragma once
 

@@ -1,4 +1,4 @@
-// What the log of interventions says of a cell, and of whoever changes it.
+// The fields of a cell, and of a client that changes it, in the log of interventions.
 #pragma once
 
 #include <string>

@@ -74,7 +74,7 @@ Qos ros_qos(const RosType& type, bool reliable, std::int32_t depth) {
   dds_qset_durability(qos.get(),
                       type.is_latched ? DDS_DURABILITY_TRANSIENT_LOCAL : DDS_DURABILITY_VOLATILE);
   dds_qset_history(qos.get(), DDS_HISTORY_KEEP_LAST, depth);
-  // What a late reader gets of a latched topic. By default that is one sample, whatever the depth.
+  // By default, a late reader of a latched topic gets one sample, whatever the depth.
   dds_qset_durability_service(qos.get(), 0, DDS_HISTORY_KEEP_LAST, depth, DDS_LENGTH_UNLIMITED,
                               DDS_LENGTH_UNLIMITED, DDS_LENGTH_UNLIMITED);
   set_user_data(qos, type.user_data);

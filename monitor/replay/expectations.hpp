@@ -63,7 +63,7 @@ class Expectations {
   // Tells, after finish(), how many ticks of each expectation were not judged, or were doubtful and
   // allowed.
   [[nodiscard]] const std::vector<std::string>& notes() const noexcept { return notes_; }
-  // What each expectation is, and its least distance in the ticks that were to be judged.
+  // Each expectation in words, and its least distance in the ticks that were to be judged.
   struct Outcome {
     std::string expectation;  // "at least 0.05 m of arm - table", "zone 'stop'"
     std::string least;        // empty: no pair was known and on time in any of them

@@ -200,7 +200,7 @@ bool BroadPhase::cull(std::uint32_t pair, double lower) noexcept {
   return false;
 }
 
-// As level_of(), without its margins, and with the motion alone that is unobserved now, m.
+// The level of level_of() without its margins, for the motion alone that is unobserved now, m.
 double BroadPhase::level(std::uint32_t pair, double horizon) const noexcept {
   return std::max(horizon, zone_levels_.largest_threshold(pair)) +
          bodies_[ends(pair).a].state->may_have_moved + bodies_[ends(pair).b].state->may_have_moved;

@@ -41,7 +41,7 @@ class Listener {
     for (const Topic& row : kTopics)
       readers_.push_back(joined_.participant().reader(row.kind, Topics{}.*row.name));
   }
-  // The topics of which anything has come.
+  // The topics on which a message has come.
   [[nodiscard]] Names heard() const {
     Names names;
     for (std::size_t i = 0; i < kTopics.size(); ++i) {

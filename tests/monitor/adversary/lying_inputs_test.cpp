@@ -71,7 +71,7 @@ std::vector<Channel> struck_by(Lie lie) {
 // Until all pairs have to be certified again, and a little longer.
 std::int64_t long_enough(const Fault& fault) { return fault.to + recovers(fault) + kSecond / 4; }
 
-// How soon the faults of one kind were told, for the page of tools/evidence.
+// The times until the faults of one kind were told, for the page of tools/evidence.
 class Times {
  public:
   void add(const Detected& detected) {

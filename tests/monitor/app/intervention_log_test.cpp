@@ -28,7 +28,7 @@ using testing::HasSubstr;
 
 class Interventions : public testing::Test {
  protected:
-  // The kinds of the lines, of which none is broken.
+  // The kinds of the lines; expects that no line is broken.
   std::vector<std::string> kinds() {
     std::vector<std::string> kinds;
     fields.clear();

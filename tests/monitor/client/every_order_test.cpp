@@ -22,7 +22,7 @@ namespace {
 constexpr std::int64_t kOrderPeriodNs = 1'000'000, kOrderStartNs = 1'700'000'000'000'000'000;
 constexpr int kOrderedMessages = 6;
 
-// What a partner does with its next report.
+// The choices of a partner for its next report.
 enum class Sending : std::uint8_t { kSends, kSkips, kSendsOtherBits, kSendsAFlippedBit, kCount };
 
 clearance_msg_Distances message_of(std::size_t partner, std::uint64_t cycle, Sending event) {
