@@ -31,7 +31,7 @@ inline std::string cell_at_rate() {
   std::string text = meeting_cell();
   const std::string rate = "rate_hz: 200";
   return text.replace(text.find(rate), rate.size(),
-                      "rate_hz: " + std::to_string(number_of("CLEARANCE_KILLS_RATE", 200)));
+                      "rate_hz: " + std::to_string(number_of("CLEARANCE_KILLS_RATE", 50)));
 }
 
 class Partners : public ::testing::Test {
@@ -53,6 +53,8 @@ class Partners : public ::testing::Test {
   std::uint64_t cycle = 0, last = 0, lineage = 0, came = 0, again = 0;
 
   ChildProcess& start(const std::string& name, const std::vector<std::string>& more = {}) {
+    if (daemons.contains(name))
+      logs_before += "== before, " + name + "\n" + daemons[name]->output();
     daemons[name] = std::make_unique<ChildProcess>(
         kDaemon, with(with({file.path()}, dds_arguments(dds)), with({"--partner", name}, more)));
     return *daemons[name];
@@ -60,7 +62,8 @@ class Partners : public ::testing::Test {
   void TearDown() override {
     leaders.check();
     const bool judges_lost = cell.scene.rate_hz <= 200.0 && !count_apart;
-    EXPECT_TRUE(lost == 0 || !judges_lost || ran_over()) << lost << " cycles are missing";
+    EXPECT_TRUE(lost == 0 || !judges_lost || ran_over())
+        << lost << " cycles are missing" << losses << logs();
   }
   // Has a daemon told that a tick ended too late? The machine was busy then.
   bool ran_over() { return logs().find("[overruns]") != std::string::npos; }
@@ -93,6 +96,14 @@ class Partners : public ::testing::Test {
       EXPECT_EQ(reports.check().missed, 0u) << "cycles are missing";
     } else {
       lost += reports.check().missed;
+      if (reports.check().missed != 0) {
+        losses +=
+            "\n" + std::string(reports->partner) + ": cycle " + std::to_string(cycle) + " to " +
+            std::to_string(reports->cycle) + " in " +
+            std::to_string(1e-6 * static_cast<double>(reports->now_ns - now_ns)) + " ms, written " +
+            std::to_string(1e-6 * static_cast<double>(reports->publish_ns - reports->now_ns)) +
+            " ms later\n";
+      }
     }
     longest_ns = std::max(longest_ns, cycle == 0 ? 0 : reports->now_ns - now_ns);
     now_ns = reports->now_ns;
@@ -111,13 +122,15 @@ class Partners : public ::testing::Test {
     return read_until([this] { return states[PartnerState::kAgrees] > 20; });
   }
   std::string logs() {
-    std::string text;
+    std::string text = logs_before;
     for (const auto& [name, daemon] : daemons) text += "== " + name + "\n" + daemon->output();
     return text;
   }
 
   std::map<PartnerState, int> states;
   std::uint64_t lost = 0;
+  std::string losses,
+      logs_before;  // what was lost and when; the logs of daemons that were started again
   bool count_apart =
       false;  // a change of the cell parts them, and a busy machine may tick late then
   std::int64_t now_ns = 0, longest_ns = 0;  // of the last report; between two reports
