@@ -21,9 +21,58 @@ using RealVec = Eigen::Matrix<Real, 3, 1>;
 constexpr double kOutside[] = {0.0, 1e-6, 1e-3, 0.1, 1.0, 10.0};
 constexpr double kInside[] = {-1e-6, -1e-3, -0.03, -0.3};
 
+Body made(ShapeResult shape) {
+  return std::make_shared<const ConvexBody>(std::get<ConvexBody>(std::move(shape)));
+}
+
+double size_of(const ConvexBody& body) { return body.bounding_radius + body.radius; }
+
+SuiteCase empty_case(const std::string& kind, double separation, Body a, Body b) {
+  const double size = std::max(size_of(*a), size_of(*b));
+  return {kind, separation, {std::move(a), std::move(b), {}}, {}, size};
+}
+
+// From rows of a rotation matrix that is rounded.
+Pose reported_pose(const Vec3& position, const Vec3& x, const Vec3& y, const Vec3& z) {
+  Mat3 rows;
+  rows << x.transpose(), y.transpose(), z.transpose();
+  return {position, Eigen::Quaterniond(rows).normalized()};
+}
+
+// Pairs for which users of a library reported a wrong answer, by its tracker: sizes in m, poses in
+// the world. Where two touch, they begin
+// 0.1 m apart, since a touching pair has no certain normal.
+Trajectory fcl_493() {
+  const Vec3 x{0.94096063217417758, 0.29296840037289501, 0.16959541586174812},
+      y{-0.23569836841299879, 0.92661523595848427, -0.29296840037289507},
+      z{-0.2429801799032639, 0.23569836841299885, 0.94096063217417758};
+  const Body cube = made(box({0.125, 0.125, 0.125}));
+  const Vec3 b{0.0, 0.0, 1.25}, a{0.073242100093223821, 0.23165380898962123, 1.3089245921032497};
+  return {cube, cube, {{reported_pose(a + 0.4 * (a - b), x, y, z), reported_pose(b, x, y, z)}}};
+}
+Trajectory coal_604() {
+  return {made(box({0.1815, 0.1385, 0.1815})),
+          made(box({0.1815, 0.1815, 0.1385})),
+          {{reported_pose({1.503354966, -0.8531707835, 0.7700092418},
+                          {0.9999195703, 0.01021849413, 0.007512347878},
+                          {-0.01021878248, 0.9999477869, -3.329855922e-17},
+                          {-0.007511955635, -7.676704888e-05, 0.9999717819}),
+            reported_pose({1.48838308, -1.102020834, 0.4497073799},
+                          {0.9998670967, -0.01297708324, 0.009868343982},
+                          {0.01297771517, 0.9999157859, 5.255670031e-17},
+                          {-0.009867512928, 0.0001280685574, 0.9999513067})}}};
+}
+Trajectory mujoco_1857() {
+  return {made(segment({0.0, 0.0, -0.05}, {0.0, 0.0, 0.05}, 0.01)),
+          made(cylinder(0.2, 0.005)),
+          {{Pose{{-0.1, 0.0, 0.0}, Eigen::Quaterniond::Identity()},
+            Pose{{0.0, 0.0, 0.1}, Eigen::Quaterniond::Identity()}}}};
+}
+
 struct Ride {
   const char *kind, *load;
-  bool rounded;  // both bodies are points or segments with a radius
+  bool rounded;                        // both bodies are points or segments with a radius
+  Trajectory (*reported)() = nullptr;  // its first pose, in place of a load
 };
 constexpr Ride kRides[] = {
     {"boxes", "boxes", false},
@@ -38,21 +87,23 @@ constexpr Ride kRides[] = {
     {"cylinder and box", "cylinder-box", false},
     {"ellipsoid and link", "ellipsoid-link", false},
     {"link and capsule", "link-capsule", false},
+    {"FCL 493, boxes", "", false, fcl_493},
+    {"Coal 604, boxes", "", false, coal_604},
+    {"MuJoCo 1857, capsule and disc", "", false, mujoco_1857},
 };
 
-Body made(ShapeResult shape) {
-  return std::make_shared<const ConvexBody>(std::get<ConvexBody>(std::move(shape)));
-}
-
-double size_of(const ConvexBody& body) { return body.bounding_radius + body.radius; }
-
-SuiteCase empty_case(const std::string& kind, double separation, Body a, Body b) {
-  const double size = std::max(size_of(*a), size_of(*b));
-  return {kind, separation, {std::move(a), std::move(b), {}}, {}, size};
+// A reported pair slides on by 1e-5 m a step.
+std::vector<Trajectory> motions_of(const Ride& ride) {
+  if (ride.reported == nullptr) return trajectories(ride.load);
+  Trajectory motion = ride.reported();
+  const auto [a, b] = motion.poses.front();
+  for (int k = 1; k < kTrajectorySteps; ++k)
+    motion.poses.push_back({a, {b.position + 1e-5 * k * Vec3(0.6, 0.8, 0.0), b.orientation}});
+  return {motion};
 }
 
 void ride(const Ride& ride, int motions, int steps, std::vector<SuiteCase>& into) {
-  const std::vector<Trajectory> all = trajectories(ride.load);
+  const std::vector<Trajectory> all = motions_of(ride);
   for (int i = 0; i < std::min(motions, static_cast<int>(all.size())); ++i) {
     const Trajectory& t = all[static_cast<std::size_t>(i)];
     TrueDistance pair(*t.a, *t.b);
