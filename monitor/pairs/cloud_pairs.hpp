@@ -43,7 +43,9 @@ class CloudPairs {
   }
 
   // Bounds for the exact poses of both parts. Points and normal are in the world; the normal leads
-  // from A to B. All of them are NaN if the status is kBadPose.
+  // from A to B. Points and normal are NaN if the status is kBadPose, or if the image has no
+  // element left. In the second case the lower bound is at most the radius of its view, and the
+  // upper one that of an element anywhere in the view.
   struct Answer {
     DistanceBounds bounds;
     DistanceStatus status = DistanceStatus::kBadPose;

@@ -161,7 +161,8 @@ bool Monitor::set_absent(std::uint32_t object, bool absent) noexcept {
 
 bool Monitor::show(std::uint32_t sensor, const SensorFrame& frame) noexcept {
   State& s = *state_;
-  if (sensor >= s.shown.size() || frame.cloud == nullptr || frame.cloud->size() == 0) return false;
+  if (sensor >= s.shown.size() || frame.cloud == nullptr || !frame.cloud->shows_place())
+    return false;
   s.shown[sensor].frame = frame;
   s.shown[sensor].awaited = 0;
   return true;
