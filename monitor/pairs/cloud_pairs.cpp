@@ -60,8 +60,7 @@ CloudPairs::Answer CloudPairs::query(const Content& content, const PosedPart& se
   if (found.answer == CloudAnswer::kBadPose) return answer;
   const double error = rounded_up(placing_error(seen, part) + content.pose_error);
   if (found.answer == CloudAnswer::kEmpty) {
-    const double view = seen.sphere_in_world.radius;
-    answer.bounds = {rounded_down(std::min(found.lower, view) - error),
+    answer.bounds = {rounded_down(std::min(found.lower, content.range) - error),
                      most_between(seen.sphere_in_world, part.sphere_in_world)};
     answer.status = DistanceStatus::kIterationLimit;
     return answer;

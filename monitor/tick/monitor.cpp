@@ -325,7 +325,7 @@ void Monitor::State::take_frames() noexcept {
     if (scene.sensors[sensor].is_witness)
       inputs.robots.witness(sensor, frame.robots, scene.sensors[sensor].witness_frames);
     culling.forget_object(object, table);
-    clouds->set(sensor, {frame.cloud, frame.pose_error});
+    clouds->set(sensor, {frame.cloud, frame.pose_error, scene.sensors[sensor].greatest_depth});
     shown[sensor].in_use = frame;
     inputs.sensors[sensor].carrier = frame.carrier;
     hidden.take(sensor, *frame.cloud);
