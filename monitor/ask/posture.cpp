@@ -139,11 +139,12 @@ std::optional<std::string> Posture::take_frame(const SeenFrame& frame) {
     left_out_[i] = 1;
     return std::nullopt;
   }
-  if (frame.cloud == nullptr || frame.cloud->size() == 0)
+  if (frame.cloud == nullptr || !frame.cloud->shows_place())
     return sensor_named(frame.sensor) + "its frame is empty, which is not known to be clear";
   if (!(frame.pose_error >= 0.0) || !std::isfinite(frame.pose_error))
     return sensor_named(frame.sensor) + "its pose_error is not a number from 0 on";
-  contents_[scene_.objects[i].sensor] = {frame.cloud.get(), frame.pose_error};
+  contents_[scene_.objects[i].sensor] = {frame.cloud.get(), frame.pose_error,
+                                         scene_.sensors[scene_.objects[i].sensor].greatest_depth};
   return take_pose(frame.sensor, i, frame.world_from_sensor, frame.age);
 }
 

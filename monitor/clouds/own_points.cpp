@@ -12,11 +12,30 @@ namespace {
 // A bound of the errors in lengths that are computed here, relative to them.
 constexpr double kRoundedUp = 1.0 + 0x1p-40;
 
+// The pose of a body whose origin is at a point of the cloud's frame.
+RelativePose moved_to(const Vec3& p, const RelativePose& pose) noexcept {
+  RelativePose at = pose;
+  at.translation = pose.rotation * p + pose.translation;
+  at.translation_error = pose.translation_error + pose.rotation_error * p.norm() +
+                         0x1p-49 * (p.norm() + pose.translation.norm());
+  return at;
+}
+
+// Samples an element before it is shelved. `at` places the element's centre, and all of its points
+// are within `radius` of it.
+void sample(const ConvexBody& part, const ConvexBody& point, const RelativePose& at, double radius,
+            double depth, BlindShell& blind) noexcept {
+  if (std::isnan(depth) || blind.elements % kSampled != 0) return;
+  TrackingState features;
+  ++blind.sampled;
+  if (!(distance(part, point, at, features).upper >= -(depth + radius))) ++blind.deep;
+}
+
 class SlabShelf {
  public:
   SlabShelf(const ConvexBody& part, const RelativePose& pose, double shell, DepthCloud& cloud,
-            SlabBody& body) noexcept
-      : part_(part), pose_(pose), shell_(shell), cloud_(cloud), body_(body) {}
+            SlabBody& body, double depth) noexcept
+      : part_(part), pose_(pose), shell_(shell), cloud_(cloud), body_(body), depth_(depth) {}
 
   BlindShell run() noexcept {
     if (cloud_.levels() > 0) descend(cloud_.levels() - 1, 0);
@@ -42,12 +61,8 @@ class SlabShelf {
   // A query of a point costs a tenth of that of a slab. Most slabs of the robot have their middle
   // within the shell.
   [[nodiscard]] bool has_near_middle(const DepthCloud::Slab& slab) noexcept {
-    const Vec3 p = slab.middle();
-    RelativePose at;
-    at.translation = pose_.rotation * p + pose_.translation;
-    at.translation_error = pose_.translation_error + pose_.rotation_error * p.norm() +
-                           0x1p-49 * (p.norm() + pose_.translation.norm());
-    const DistanceResult r = distance(part_, body_.origin(), at, point_features_, {.depth = false});
+    const DistanceResult r = distance(part_, body_.origin(), moved_to(slab.middle(), pose_),
+                                      point_features_, {.depth = false});
     return r.status != DistanceStatus::kBadPose && r.upper <= shell_;
   }
 
@@ -67,6 +82,8 @@ class SlabShelf {
       if (cloud_.block(b).low[lane] > cloud_.block(b).high[lane]) continue;
       const DepthCloud::Slab slab = cloud_.pixel_slab(b, lane);
       if (!has_near_middle(slab) && !is_near(slab)) continue;
+      sample(part_, body_.origin(), moved_to(slab.middle(), pose_), slab.diameter(),
+             depth_ + shell_, blind_);
       cloud_.remove(b, lane);
       ++blind_.elements;
       blind_.shell = shell_;
@@ -80,6 +97,7 @@ class SlabShelf {
   double shell_;
   DepthCloud& cloud_;
   SlabBody& body_;
+  double depth_;
   TrackingState features_, point_features_;
   // Half-spaces n.x <= offset of the cloud's frame that contain the part, but for rounding.
   struct Plane {
@@ -103,24 +121,18 @@ class BallShelf {
   }
 
  private:
-  [[nodiscard]] RelativePose at(const Vec3& p) const noexcept {
-    RelativePose at = pose_;
-    at.translation = pose_.rotation * p + pose_.translation;
-    at.translation_error = pose_.translation_error + pose_.rotation_error * p.norm() +
-                           0x1p-49 * (p.norm() + pose_.translation.norm());
-    return at;
-  }
-
   // Does the ball of this radius around the point come near?
   [[nodiscard]] bool is_near(const Vec3& p, double radius) noexcept {
-    const DistanceResult r = distance(part_, cloud_.origin(), at(p), features_, {.depth = false});
+    const DistanceResult r =
+        distance(part_, cloud_.origin(), moved_to(p, pose_), features_, {.depth = false});
     return r.status != DistanceStatus::kBadPose && r.lower <= (shell_ + radius) * kRoundedUp;
   }
   // The ball around a cube decides for most of them.
   [[nodiscard]] bool is_near(const Cube& cube) noexcept {
     if (!is_near(cube.centre, kCubeRadius * cube.half)) return false;
-    const DistanceResult r = distance(part_, cloud_.cube_at_origin(cube.half), at(cube.centre),
-                                      cube_features_, {.depth = false});
+    const DistanceResult r =
+        distance(part_, cloud_.cube_at_origin(cube.half), moved_to(cube.centre, pose_),
+                 cube_features_, {.depth = false});
     return r.status != DistanceStatus::kBadPose && r.lower <= shell_ * kRoundedUp;
   }
 
@@ -158,6 +170,7 @@ class BallShelf {
       const Vec3 p(block.x[lane], block.y[lane], block.z[lane]);
       const double near = is_cube ? radius : reach(p, radius);
       if (is_cube ? !is_near(cloud_.cube(b, lane)) : !is_near(p, near)) continue;
+      sample(part_, cloud_.origin(), moved_to(p, pose_), radius, limit_.depth + shell_, blind_);
       blind_.elements += cloud_.remove(b, lane) ? 1 : 0;
       blind_.shell = shell_;
       blind_.add(p, radius);
@@ -178,8 +191,9 @@ class BallShelf {
 }  // namespace
 
 BlindShell shelve_own_points(const ConvexBody& part, const RelativePose& part_from_cloud,
-                             double shell, DepthCloud& cloud, SlabBody& body) noexcept {
-  return SlabShelf(part, part_from_cloud, shell, cloud, body).run();
+                             double shell, DepthCloud& cloud, SlabBody& body,
+                             const CentreLimit& limit) noexcept {
+  return SlabShelf(part, part_from_cloud, shell, cloud, body, limit.depth).run();
 }
 
 BlindShell shelve_own_points(const ConvexBody& part, const RelativePose& part_from_cloud,

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cstddef>
+#include <limits>
 
 #include "core/convex_body.hpp"
 #include "core/pose.hpp"
@@ -18,6 +19,9 @@ struct BlindShell {
   std::size_t elements = 0;
   double thickness = 0.0;  // m: no point of a shelved element is farther from the part
   double shell = 0.0;      // m: the widest that shelved one
+  // Of every kSampled-th shelved element: their number, and the number of those that are deep, so
+  // that the sensor has seen through the part's surface (CentreLimit::depth).
+  std::size_t sampled = 0, deep = 0;
   // A box of the cloud's frame that contains the shelved elements, m; low > high: none were.
   Vec3 low = Vec3::Constant(kInfinity), high = Vec3::Constant(-kInfinity);
 
@@ -30,6 +34,8 @@ struct BlindShell {
     elements += other.elements;
     thickness = std::max(thickness, other.thickness);
     shell = std::max(shell, other.shell);
+    sampled += other.sampled;
+    deep += other.deep;
     low = low.cwiseMin(other.low);
     high = high.cwiseMax(other.high);
   }
@@ -41,7 +47,13 @@ struct CentreLimit {
   double most = kInfinity;  // m, >= the shell: the points of the part itself are within this of it
   DepthError error;
   bool along_ray = false;  // depth is the distance from the sensor, not z
+  // An element is deep if all of it lies deeper in the part than this and the shell, m. NaN: no
+  // element is sampled.
+  double depth = std::numeric_limits<double>::quiet_NaN();
 };
+
+// A depth costs up to a hundred queries, and a body that fills the picture has a thousand samples.
+inline constexpr std::size_t kSampled = 256;
 
 // Shelves every element that comes within `shell` (m, >= 0) of the part: queries do not meet it any
 // more. The pose is that of the frame's stamp, never the present one. A surface of the robot lies
@@ -51,7 +63,8 @@ struct CentreLimit {
 // pose shelves nothing. noexcept, no heap, deterministic.
 [[nodiscard]] BlindShell shelve_own_points(const ConvexBody& part,
                                            const RelativePose& part_from_cloud, double shell,
-                                           DepthCloud& cloud, SlabBody& body) noexcept;
+                                           DepthCloud& cloud, SlabBody& body,
+                                           const CentreLimit& limit = {}) noexcept;
 [[nodiscard]] BlindShell shelve_own_points(const ConvexBody& part,
                                            const RelativePose& part_from_cloud, double shell,
                                            PointCloud& cloud,

@@ -49,8 +49,13 @@ class SeenCloud {
   [[nodiscard]] std::size_t size() const noexcept {
     return depth() != nullptr ? depth()->size() : points()->size();
   }
+  // False: nothing shows that the place is clear. An empty cloud shows it if what was left out was
+  // enough of bodies that the caller knows, at their places.
+  [[nodiscard]] bool shows_place() const noexcept { return size() > 0 || shows_known_; }
+  void note_known(bool shows_known) noexcept { shows_known_ = shows_known; }
 
-  // `body` is scratch memory of the caller. Elements that were cropped count: `lower` is a bound of
+  // `body` is scratch memory of the caller. Without elements, the answer is kEmpty, and only what
+  // was left out bounds `lower`. Elements that were cropped count: `lower` is a bound of
   // their distance, too. So do those that were left out in a shell which is thicker than trusted,
   // unless that is the shell of `object`.
   [[nodiscard]] NearestElement nearest(const ConvexBody& part, const RelativePose& part_from_cloud,
@@ -61,7 +66,7 @@ class SeenCloud {
         depth() != nullptr
             ? nearest_element(part, *depth(), body, part_from_cloud, tracking, most_overlap_work)
             : nearest_element(part, *points(), part_from_cloud, tracking, most_overlap_work);
-    if (found.answer != CloudAnswer::kNearest) return found;
+    if (found.answer == CloudAnswer::kBadPose) return found;
     if (crop_.radius < kInfinity)
       found.lower = std::min(found.lower, to_cropped(part, part_from_cloud));
     for (const HiddenNear& near : hidden_) {
@@ -120,7 +125,7 @@ class SeenCloud {
   [[nodiscard]] BlindShell shelve(const ConvexBody& part, const RelativePose& part_from_cloud,
                                   double shell, const CentreLimit& limit, SlabBody& body) noexcept {
     if (DepthCloud* const slabs = depth())
-      return shelve_own_points(part, part_from_cloud, shell, *slabs, body);
+      return shelve_own_points(part, part_from_cloud, shell, *slabs, body, limit);
     return shelve_own_points(part, part_from_cloud, shell, *points(), limit);
   }
   // Shells thicker than this count for the parts of other objects, m; as after the last build.
@@ -165,6 +170,7 @@ class SeenCloud {
   std::vector<HiddenNear> hidden_;
   CloudCrop crop_{.centre = Vec3::Zero(), .radius = kInfinity};
   double excess_ = 0.0, trusted_shell_ = kInfinity;
+  bool shows_known_ = false;
 };
 
 }  // namespace clearance

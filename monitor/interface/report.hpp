@@ -64,7 +64,8 @@ struct PairReport {
   // moves with a robot that states stops.
   double stop_lower = std::numeric_limits<double>::quiet_NaN();
   // The closest points, world. Of objects that overlap: the point of each that lies deepest in the
-  // other along the normal, as in DistanceResult.
+  // other along the normal, as in DistanceResult. Points and normal are NaN if an image has no
+  // element left.
   Vec3 witness_a = Vec3::Zero(), witness_b = Vec3::Zero();
   Vec3 normal = Vec3::Zero();  // unit, from A to B; NaN if no translation separates them
   // Positive when approaching; includes the rotation at the witness points. It is NaN without a

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "monitor/bodies/bounding_sphere.hpp"
 #include "monitor/bodies/directed_rounding.hpp"
 #include "monitor/interface/tight_bounds.hpp"
 
@@ -56,8 +57,14 @@ CloudPairs::Answer CloudPairs::query(const Content& content, const PosedPart& se
       content.cloud->nearest(*part.shape, relative_pose(part.world_from_part, seen.world_from_part),
                              body, tracking, most_overlap_work, part.object);
   answer.overlap_work = found.overlap_work;
-  if (found.answer != CloudAnswer::kNearest) return answer;
+  if (found.answer == CloudAnswer::kBadPose) return answer;
   const double error = rounded_up(placing_error(seen, part) + content.pose_error);
+  if (found.answer == CloudAnswer::kEmpty) {
+    answer.bounds = {rounded_down(std::min(found.lower, content.range) - error),
+                     most_between(seen.sphere_in_world, part.sphere_in_world)};
+    answer.status = DistanceStatus::kIterationLimit;
+    return answer;
+  }
   answer.bounds = {rounded_down(found.lower - error), rounded_up(found.upper + error)};
   answer.status = status_of(found, content.cloud->excess());
   const Mat3& turn = part.world_from_part_rotation;

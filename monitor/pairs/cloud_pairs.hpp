@@ -28,10 +28,12 @@ class CloudPairs {
   [[nodiscard]] std::uint32_t overlap_work_left() const noexcept { return work_left_; }
 
   // The content of a sensor's object from now on; null: none. It must not change while it is here.
-  // No element is farther than `pose_error` from its exact place, m.
+  // No element is farther than `pose_error` from its exact place, m. Without elements, no lower
+  // bound is larger than `range`, m.
   struct Content {
     const SeenCloud* cloud = nullptr;
     double pose_error = 0.0;
+    double range = 0.0;
   };
   void set(std::uint32_t sensor, const Content& content) noexcept { content_[sensor] = content; }
   [[nodiscard]] const Content& content(std::uint32_t sensor) const noexcept {
@@ -43,7 +45,9 @@ class CloudPairs {
   }
 
   // Bounds for the exact poses of both parts. Points and normal are in the world; the normal leads
-  // from A to B. All of them are NaN if the status is kBadPose.
+  // from A to B. Points and normal are NaN if the status is kBadPose, or if the image has no
+  // element left. In the second case the lower bound is at most Content::range, and the upper one
+  // that of an element anywhere in the view.
   struct Answer {
     DistanceBounds bounds;
     DistanceStatus status = DistanceStatus::kBadPose;

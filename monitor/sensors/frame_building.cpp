@@ -15,6 +15,9 @@
 namespace clearance {
 namespace {
 
+// Known bodies that fill less than this share of a picture do not show that a place is clear.
+constexpr double kLeastKnown = 0.25;
+
 const CloudCrop kNoCrop{.centre = Vec3::Zero(), .radius = kInfinity};
 
 // The least ball around two.
@@ -108,7 +111,7 @@ FrameFault Sensors::build_at(State& state, const Waiting& frame, const PastPose&
                    .message = frame.message});
   }
   leave_out(state, frame, place, cloud);
-  if (cloud.size() == 0) return FrameFault::kNothingSeen;
+  if (!cloud.shows_place()) return FrameFault::kNothingSeen;
   if (state.payloads) {
     state.payloads->look(*cloud.depth(), place, postures_, state.robots, frame.stamp_ns);
     state.status.payloads = state.payloads->all();
@@ -187,6 +190,11 @@ FrameFault Sensors::fill(State& state, const Waiting& frame, const PastPose& pla
                          SeenCloud& cloud, bool again) {
   const Sensor& sensor = state.sensor;
   cloud.note_crop(kNoCrop);
+  const auto note_known = [&](std::size_t elements) {
+    const double picture = static_cast<double>(frame.cloud->columns) * frame.cloud->rows;
+    cloud.note_known(frame.cloud->is_picture() &&
+                     static_cast<double>(elements) >= kLeastKnown * picture);
+  };
   if (DepthCloud* const depth = cloud.depth()) {
     const DepthBuild built =
         depth->build(frame.camera, *frame.cloud->image(),
@@ -200,7 +208,8 @@ FrameFault Sensors::fill(State& state, const Waiting& frame, const PastPose& pla
     if (sensor.is_witness)
       state.robots = witness_.judge(sensor, frame.camera, *frame.cloud->image(), place, postures_);
     if (state.payloads) state.payloads->note(*depth, frame.camera, place);
-    own_image_.leave_out(sensor, frame.cloud->is_along_ray(sensor), place, postures_, cloud, body_);
+    note_known(own_image_.leave_out(sensor, frame.cloud->is_along_ray(sensor), place, postures_,
+                                    cloud, body_));
     return FrameFault::kNoFault;
   }
   const bool is_map = sensor.kind == SensorKind::kOctomap;
@@ -231,7 +240,8 @@ FrameFault Sensors::fill(State& state, const Waiting& frame, const PastPose& pla
     if (built != CloudBuild::kBuilt || points.extent() > sensor.extent()) return false;
     state.status.cropped = points.cropped();
     cloud.note_crop(points.cropped() > 0 ? crop : kNoCrop);
-    own_image_.leave_out(sensor, frame.cloud->is_along_ray(sensor), place, postures_, cloud, body_);
+    note_known(own_image_.leave_out(sensor, frame.cloud->is_along_ray(sensor), place, postures_,
+                                    cloud, body_));
     return true;
   };
   // A map is cropped to the range, and nothing of it is dropped.
@@ -273,6 +283,7 @@ void Sensors::leave_out(State& state, const Waiting& frame, const PastPose& plac
     state.status.hidden = state.persistence->hide(
         cloud, place.world_from_body, place.error(sensor.extent()), frame.stamp_ns, unseen);
     for (DepthCloud& each : unseen) each.refit();
+    if (!state.persistence->is_filled()) cloud.note_known(false);
   }
   own_image_.find_unseen(sensor, place, postures_, cloud, body_);
   if (DepthCloud* const depth = cloud.depth()) {

@@ -57,12 +57,17 @@ bool OwnImage::hang_together(std::uint32_t group, std::uint32_t other) const noe
   return stands_on(groups_[group], groups_[other]) || stands_on(groups_[other], groups_[group]);
 }
 
-void OwnImage::leave_out(const Sensor& sensor, bool along_ray, const PastPose& place,
-                         const PostureHistory& postures, SeenCloud& cloud, SlabBody& body) {
-  const double place_error = place.error(sensor.extent());
-  CentreLimit limit{
-      .error = {.constant = sensor.error_constant, .quadratic = sensor.error_quadratic},
-      .along_ray = along_ray};
+// An element that is near both a link and a known body is the link's: it shows nothing of the body.
+std::size_t OwnImage::leave_out(const Sensor& sensor, bool along_ray, const PastPose& place,
+                                const PostureHistory& postures, SeenCloud& cloud, SlabBody& body) {
+  Taking taking{
+      .sensor = sensor,
+      .place = place,
+      .postures = postures,
+      .cloud = cloud,
+      .body = body,
+      .limit = {.error = {.constant = sensor.error_constant, .quadratic = sensor.error_quadratic},
+                .along_ray = along_ray}};
   Unseen* const places = of_sensor(sensor);
   if (places != nullptr) {
     places->is_built = std::ranges::all_of(places->clouds, [&](DepthCloud& each) {
@@ -71,36 +76,55 @@ void OwnImage::leave_out(const Sensor& sensor, bool along_ray, const PastPose& p
     });
     std::ranges::fill(places->others, *cloud.depth());
   }
-  cloud.hidden().clear();
+  cloud.hidden().assign(bodies_.size(), {});
   cloud.trust_shells(sensor.trusted_shell);
-  for (const Body& each : bodies_) {
-    HiddenNear& near = cloud.hidden().emplace_back();
-    near.object = each.object;
-    if (each.robot == kNone && !sensor.knows) continue;
-    const PastPose past = place_of(each, postures);
-    if (!past.known) continue;
-    for (const Part& part : scene_.objects[each.object].parts) {
-      const double error =
-          place_error + error_of(past, part) + errors_.largest(each.object, sensor.object);
-      const Pose world_from_part = compose(past.world_from_body, part.object_from_part);
-      const double shell = std::min(sensor.most_shell, rounded_up(sensor.own_shell + error));
-      // The distance of an organised point to its neighbours says nothing about whose image it is.
-      limit.most = sensor.by_neighbours ? shell : sensor.most_shell;
-      const RelativePose part_from_cloud = relative_pose(world_from_part, place.world_from_body);
-      const BlindShell blind = cloud.shelve(part.shape, part_from_cloud, shell, limit, body);
-      for (std::uint32_t group = 0; places != nullptr && group < places->others.size(); ++group) {
-        if (!hang_together(group, each.group))
-          static_cast<void>(
-              shelve_own_points(part.shape, part_from_cloud, shell, places->others[group], body));
-      }
-      near.shell.add(blind);
-      if (blind.elements > 0)
-        near.shell.thickness = std::max(near.shell.thickness, rounded_up(blind.thickness + error));
+  std::size_t known = 0;
+  bool is_elsewhere = false;
+  for (const bool links : {true, false}) {
+    for (std::size_t i = 0; i < bodies_.size(); ++i) {
+      if ((bodies_[i].robot != kNone) != links) continue;
+      HiddenNear& near = cloud.hidden()[i];
+      near.object = bodies_[i].object;
+      if (!links && !sensor.knows) continue;
+      leave_out(bodies_[i], taking, near);
+      if (links) continue;
+      known += near.shell.elements;
+      is_elsewhere |= near.shell.sampled > 0 && 2 * near.shell.deep >= near.shell.sampled;
     }
   }
   for (std::size_t group = 0; group < unseen(sensor).size(); ++group) {
     places->clouds[group].leave_out_behind(
         *cloud.depth(), places->others.empty() ? nullptr : &places->others[group]);
+  }
+  return is_elsewhere ? 0 : known;
+}
+
+void OwnImage::leave_out(const Body& each, Taking& taking, HiddenNear& near) {
+  const Sensor& sensor = taking.sensor;
+  const PastPose past = place_of(each, taking.postures);
+  if (!past.known) return;
+  Unseen* const places = of_sensor(sensor);
+  CentreLimit limit = taking.limit;
+  for (const Part& part : scene_.objects[each.object].parts) {
+    const double error = taking.place.error(sensor.extent()) + error_of(past, part) +
+                         errors_.largest(each.object, sensor.object);
+    const Pose world_from_part = compose(past.world_from_body, part.object_from_part);
+    const double shell = std::min(sensor.most_shell, rounded_up(sensor.own_shell + error));
+    // The distance of an organised point to its neighbours says nothing about whose image it is.
+    limit.most = sensor.by_neighbours ? shell : sensor.most_shell;
+    if (each.robot == kNone) limit.depth = scene_.objects[each.object].mesh_error;
+    const RelativePose part_from_cloud =
+        relative_pose(world_from_part, taking.place.world_from_body);
+    const BlindShell blind =
+        taking.cloud.shelve(part.shape, part_from_cloud, shell, limit, taking.body);
+    for (std::uint32_t group = 0; places != nullptr && group < places->others.size(); ++group) {
+      if (!hang_together(group, each.group))
+        static_cast<void>(shelve_own_points(part.shape, part_from_cloud, shell,
+                                            places->others[group], taking.body));
+    }
+    near.shell.add(blind);
+    if (blind.elements > 0)
+      near.shell.thickness = std::max(near.shell.thickness, rounded_up(blind.thickness + error));
   }
 }
 

@@ -28,9 +28,10 @@ class OwnImage {
   // Writes the blind shells of SeenCloud::hidden(), too. A link whose pose at the stamp is not
   // known is not left out: its image counts as an obstacle. Neither are elements farther than
   // Sensor::most_shell from where a link is believed to be. Depths are z, or with `along_ray`
-  // distances from the sensor. Call refit() afterwards.
-  void leave_out(const Sensor& sensor, bool along_ray, const PastPose& place,
-                 const PostureHistory& postures, SeenCloud& cloud, SlabBody& body);
+  // distances from the sensor. Call refit() afterwards. Returns how many elements are the image of
+  // known bodies; 0 if one of these bodies is not where the cell has it.
+  std::size_t leave_out(const Sensor& sensor, bool along_ray, const PastPose& place,
+                        const PostureHistory& postures, SeenCloud& cloud, SlabBody& body);
   // The places that this frame has not seen, by groups of links, after leave_out(). None: they are
   // not asked for.
   [[nodiscard]] std::span<DepthCloud> unseen(const Sensor& sensor) noexcept;
@@ -61,6 +62,16 @@ class OwnImage {
     bool is_built = false;
   };
 
+  // What a frame is taken apart with, by all bodies.
+  struct Taking {
+    const Sensor& sensor;
+    const PastPose& place;
+    const PostureHistory& postures;
+    SeenCloud& cloud;
+    SlabBody& body;
+    CentreLimit limit;
+  };
+  void leave_out(const Body& each, Taking& taking, HiddenNear& near);
   [[nodiscard]] static PastPose place_of(const Body& body, const PostureHistory& postures) noexcept;
   // True if one of the robots stands on the other one, or on what that one carries.
   [[nodiscard]] bool hang_together(std::uint32_t group, std::uint32_t other) const noexcept;

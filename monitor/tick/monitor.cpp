@@ -161,7 +161,8 @@ bool Monitor::set_absent(std::uint32_t object, bool absent) noexcept {
 
 bool Monitor::show(std::uint32_t sensor, const SensorFrame& frame) noexcept {
   State& s = *state_;
-  if (sensor >= s.shown.size() || frame.cloud == nullptr || frame.cloud->size() == 0) return false;
+  if (sensor >= s.shown.size() || frame.cloud == nullptr || !frame.cloud->shows_place())
+    return false;
   s.shown[sensor].frame = frame;
   s.shown[sensor].awaited = 0;
   return true;
@@ -324,7 +325,7 @@ void Monitor::State::take_frames() noexcept {
     if (scene.sensors[sensor].is_witness)
       inputs.robots.witness(sensor, frame.robots, scene.sensors[sensor].witness_frames);
     culling.forget_object(object, table);
-    clouds->set(sensor, {frame.cloud, frame.pose_error});
+    clouds->set(sensor, {frame.cloud, frame.pose_error, scene.sensors[sensor].greatest_depth});
     shown[sensor].in_use = frame;
     inputs.sensors[sensor].carrier = frame.carrier;
     hidden.take(sensor, *frame.cloud);

@@ -230,8 +230,8 @@ TEST_F(SimulatedCamerasTest, AndTheDaemonsBoundsAreNeverAboveWhatTheySaw) {
   judge(places::sources() + "/config/cells/camera.yaml");
 }
 
-// The same camera on a mast that sways, whose place comes by tf.
-TEST_F(SimulatedCamerasTest, AndTheDaemonsBoundsAreNeverAboveWhatCamerasOnTfSaw) {
+// The text of that cell with other words in it, for a file that is elsewhere.
+std::string camera_cell(const std::vector<std::pair<std::string, std::string>>& changes) {
   const std::string cells = places::sources() + "/config/cells/";
   std::string text = read_text(cells + "camera.yaml");
   const auto replace = [&](const std::string& before, const std::string& now) {
@@ -239,12 +239,24 @@ TEST_F(SimulatedCamerasTest, AndTheDaemonsBoundsAreNeverAboveWhatCamerasOnTfSaw)
       text.replace(at, before.size(), now);
   };
   replace("seven_joint_arm/", cells + "seven_joint_arm/");
-  replace("mount: {pose:", "mount: {frame: mast, pose:");
-  text +=
+  for (const auto& [before, now] : changes) replace(before, now);
+  return text;
+}
+
+// The same camera on a mast that sways, whose place comes by tf.
+TEST_F(SimulatedCamerasTest, AndTheDaemonsBoundsAreNeverAboveWhatCamerasOnTfSaw) {
+  const CellFile moved(
+      camera_cell({{"mount: {pose:", "mount: {frame: mast, pose:"}}) +
       "\nros2: {world_frame: map}\nsimulation: {movers: [{frame: mast, amplitude: [0.1, 0.1, "
-      "0], frequency_hz: 0.3}]}\n";
-  const CellFile moved(text);
+      "0], frequency_hz: 0.3}]}\n");
   judge(moved.path());
+}
+
+// This one knows the bodies of the cell. Until the person comes, it sees nothing else.
+TEST_F(SimulatedCamerasTest, AndTheDaemonsBoundsAreNeverAboveWhatCamerasThatKnowTheCellSaw) {
+  const CellFile known(
+      camera_cell({{"    range: [0.3, 5]", "    range: [0.3, 5]\n    knows: true"}}));
+  judge(known.path());
 }
 
 TEST(WalkingPerson, MovesWithoutLeapsAndNoFasterThanItSays) {

@@ -49,6 +49,7 @@ CameraTruth::CameraTruth(const Cell& cell, client::Connection& connection, Simul
       time_(time),
       reports_(connection),
       world_(std::move(world)),
+      known_(known_bodies(cell.scene)),
       frames_(cell.scene.sensors.size()) {
   for (const JointVariable& variable : cell.scene.variables)
     joint_motion_ += 2.0 / joint_rate_hz * variable.plausible_speed() * kLongArm;
@@ -68,7 +69,7 @@ void CameraTruth::sent(const SentFrame& sent) {
   const Mat3 turn = rotation_matrix(sent.world_from_sensor.orientation);
   const double pixel = std::max(1.0 / sent.truth.camera().fx, sensor.spacing);
   for (std::size_t i = 0; i < sent.is_sent.size(); ++i) {
-    if (!sent.is_sent[i] || sent.world.is_of_robot(sent.truth.labels()[i])) continue;
+    if (!sent.is_sent[i] || is_left_out(sensor, sent.world, sent.truth.labels()[i])) continue;
     const Vec3 at = sent.truth.point(i);
     const double measured = at.z() + sensor.error_at(at.z());  // at most
     const double ray = at.norm() / at.z();
@@ -79,6 +80,11 @@ void CameraTruth::sent(const SentFrame& sent) {
   const std::lock_guard lock(mutex_);
   frames_[sent.sensor].push_back(std::move(frame));
   if (frames_[sent.sensor].size() > kKept) frames_[sent.sensor].pop_front();
+}
+
+bool CameraTruth::is_left_out(const Sensor& sensor, const SimulatedWorld& world,
+                              std::uint32_t label) const {
+  return world.is_of_robot(label) || (sensor.knows && std::ranges::binary_search(known_, label));
 }
 
 void CameraTruth::run() {
@@ -120,7 +126,7 @@ void CameraTruth::compare(std::uint32_t sensor, const clearance_msg_Distances& r
         ++unknown_;
         return;
       }
-      points = outside_of_shells(*frame, shells_of(seen, report));
+      points = outside_of_shells(cell_.scene.sensors[sensor], *frame, shells_of(seen, report));
       most_blind_ = std::max(most_blind_, frame->points.size() - points->size());
     }
     compare(pair, now_ns - (is_first ? pair.age_b_ns : pair.age_a_ns), *points);
@@ -174,13 +180,14 @@ CameraTruth::Shells CameraTruth::shells_of(std::uint32_t seen,
 
 // Links without a pair with the sensor are not reported: theirs is taken to be twice as thick as
 // the thickest one.
-std::vector<Vec3> CameraTruth::outside_of_shells(const Frame& frame, const Shells& reported) {
+std::vector<Vec3> CameraTruth::outside_of_shells(const Sensor& sensor, const Frame& frame,
+                                                 const Shells& reported) {
   double thickest = joint_motion_;
   for (const auto& [object, thickness] : reported) thickest = std::max(thickest, thickness);
   world_.place(time_.seconds_of_stamp(frame.stamp_ns));
   std::vector<OwnPart> own;
   for (std::uint32_t i = 0; i < cell_.scene.objects.size(); ++i) {
-    if (!world_.is_of_robot(i) || !world_.object(i)) continue;
+    if (!is_left_out(sensor, world_, i) || !world_.object(i)) continue;
     for (const Part& part : cell_.scene.objects[i].parts) {
       const auto shell = reported.find(i);
       const bool is_reported = shell != reported.end();

@@ -22,8 +22,8 @@ namespace clearance {
 
 // The truth is the visible surface without noise: a point of it for each pixel that was sent. The
 // reports name the frame and the joints that they used by their ages. Points that show the robot
-// itself are left out, and so are points so near to it that the daemon may have left them out with
-// its image: those in the blind shell.
+// itself, or a body that the camera `knows`, are left out, and so are points in the blind shell of
+// one of these: the daemon may have left them out with its image.
 class CameraTruth {
  public:
   // `world`: of its own, at the times of the reports. `joint_rate_hz`: of the joints that are sent.
@@ -64,6 +64,9 @@ class CameraTruth {
   using Shells = std::map<std::uint32_t, double>;  // by object, m
   static constexpr std::size_t kKept = 45;         // frames: 1.5 s
 
+  // True for a body whose image the daemon leaves out.
+  [[nodiscard]] bool is_left_out(const Sensor& sensor, const SimulatedWorld& world,
+                                 std::uint32_t label) const;
   void run();
   void compare(std::uint32_t sensor, const clearance_msg_Distances& report);
   // Pairs of two bodies, at the time of the joints that the report used.
@@ -72,7 +75,8 @@ class CameraTruth {
                const std::vector<Vec3>& points);
   [[nodiscard]] std::optional<Frame> frame_of(std::uint32_t sensor, std::int64_t stamp_ns);
   // The points of the frame that are not in the blind shell of the robots at its stamp.
-  [[nodiscard]] std::vector<Vec3> outside_of_shells(const Frame& frame, const Shells& reported);
+  [[nodiscard]] std::vector<Vec3> outside_of_shells(const Sensor& sensor, const Frame& frame,
+                                                    const Shells& reported);
   // Shells of the report for the object of a sensor.
   [[nodiscard]] Shells shells_of(std::uint32_t seen, const clearance_msg_Distances& report) const;
   [[nodiscard]] static bool is_in_shell(std::span<const OwnPart> parts, const Vec3& point,
@@ -84,6 +88,7 @@ class CameraTruth {
   const SimulationTime& time_;
   client::Reports reports_;
   SimulatedWorld world_;
+  std::vector<std::uint32_t> known_;       // bodies that the cell knows, in ascending order
   double joint_motion_ = 0.0;              // m: of a link between two joint states, at most
   std::mutex mutex_;                       // of `frames_`
   std::vector<std::deque<Frame>> frames_;  // by sensor

@@ -104,6 +104,103 @@ TEST_F(KnownBodies, AreLeftOutWhereTheCellHasThemAndAreObstaclesElsewhere) {
   EXPECT_EQ(elements_beside(flat(1, 1000)), 47u) << "a camera that does not know it";
 }
 
+// A picture of the table alone shows that nothing else is there. One in which nothing is seen, or
+// the depth is that of a place far below the table's top, does not.
+TEST_F(KnownBodies, ThatAreSeenAtTheirPlacesShowThatNothingElseIsThere) {
+  begin(", knows: true, own_shell: 0.02");
+  const ImageText table = flat(1, 1000);
+  add_joints(0.0, table.stamp_ns);
+  add(table);
+  const auto frames = settle(table.stamp_ns + 25'000'000);
+  ASSERT_EQ(frames.size(), 1u);
+  EXPECT_EQ(frames[0].cloud->size(), 0u);
+  Monitor monitor(cell.scene);
+  ASSERT_TRUE(monitor.show(0, frames[0]));
+  for (int i = 1; i < 5; ++i) {
+    const std::int64_t now = table.stamp_ns + i * 1'000'000;
+    const Report& report = monitor.tick({}, test::joints(0.01 * i, 0.0, 0.0, now), now);
+    for (const PairReport& pair : report.pairs) {
+      if (cell.scene.pairs[pair.pair].first == 0) continue;  // the cart was never heard
+      EXPECT_LE(pair.lower, cell.scene.sensors[0].greatest_depth);
+      EXPECT_GT(pair.lower, 0.9 * cell.scene.sensors[0].greatest_depth);
+      EXPECT_GE(pair.upper, pair.lower);
+      EXPECT_LT(pair.upper, kInfinity);
+    }
+  }
+  EXPECT_EQ(count(FrameFault::kNothingSeen), 0u);
+  for (const std::uint16_t depth : {std::uint16_t{0}, std::uint16_t{1100}}) {
+    begin(", knows: true, own_shell: 0.02");
+    const ImageText other = flat(1, depth);
+    add_joints(0.0, other.stamp_ns);
+    EXPECT_EQ(elements(other), 0u);
+    EXPECT_EQ(count(FrameFault::kNothingSeen), 1u) << depth;
+    EXPECT_EQ(sensors->status(0).frames, 0u);
+  }
+}
+
+// Pixels of a lens that is covered but for a corner show no more than their own rays.
+TEST_F(KnownBodies, ThatFillLessThanAQuarterOfThePictureShowNothing) {
+  for (const std::size_t seen : {1, 11, 12}) {
+    begin(", knows: true, own_shell: 0.02");
+    ImageText image = flat(1, 0);
+    for (std::size_t pixel = 0; pixel < seen; ++pixel) put(image, 4 * pixel, 1000);
+    add_joints(0.0, image.stamp_ns);
+    EXPECT_EQ(elements(image), 0u);
+    EXPECT_EQ(sensors->status(0).frames, seen == 12 ? 1u : 0u) << seen;
+  }
+}
+
+// Six pixels show a place deep in the third box: it is elsewhere, and something may be in its
+// place. The other boxes, which are where the cell has them, do not outvote it.
+TEST_F(KnownBodies, ShowNothingWhereOneOfThemIsSeenThrough) {
+  const auto box = [](const std::string& name, const std::string& x, const std::string& size) {
+    return ", {name: " + name + ", fixed: true, pose: {xyz: [" + x + ", 0, 0]}, box: {size: [" +
+           size + ", 6, 2]}}";
+  };
+  for (const std::uint16_t depth : {std::uint16_t{1000}, std::uint16_t{1900}}) {
+    make(kImage + ", knows: true, own_shell: 0.02" + kAbove, "",
+         box("left", "-2.1", "4") + box("middle", "0", "0.2") + box("right", "2.1", "4"),
+         "  - {between: [left, eye]}\n  - {between: [middle, eye]}\n  - {between: [right, eye]}\n");
+    add(Type::kCameraInfo, InfoText{}.cdr(), kStart);
+    add_joints(0.0, kStart);
+    ImageText image = flat(1, 1000);
+    for (std::size_t row = 0; row < 6; ++row) {
+      for (const std::size_t column : {5, 6}) put(image, 8 * row + column, 0);
+      put(image, 8 * row + 7, depth);
+    }
+    add_joints(0.0, image.stamp_ns);
+    EXPECT_EQ(elements(image), 0u);
+    EXPECT_EQ(sensors->status(0).frames, depth == 1000 ? 1u : 0u);
+  }
+}
+
+// The arm fills the picture. Its surface is that of the table as well, which nothing shows.
+TEST_F(KnownBodies, ShowNothingWhereALinkIsSeen) {
+  for (const bool knows : {false, true}) {
+    make(kImage + (knows ? ", knows: true" : "") + kOverTheArm, "",
+         ", {name: table, fixed: true, pose: {xyz: [0.5, 0, 0]}, box: {size: [0.5, 0.5, 0.1]}}",
+         "  - {between: [table, eye]}\n");
+    add(Type::kCameraInfo, narrow().cdr(), kStart);
+    add_joints(0.0, kStart);
+    const ImageText image = flat(1, 1950);
+    add_joints(0.0, image.stamp_ns);
+    EXPECT_EQ(elements(image), 0u);
+    EXPECT_EQ(count(FrameFault::kNothingSeen), 1u);
+  }
+}
+
+// A person who has been there from the start is in no frame before two have the place.
+TEST_F(KnownBodies, ShowNothingUntilEnoughFramesHavePersisted) {
+  begin(", knows: true, own_shell: 0.02, max_speed: 0.5, persist: {frames: 2, of: 3}");
+  for (int i = 1; i < 4; ++i) {
+    ImageText image = flat(i, static_cast<std::uint16_t>(1000 + i));
+    put(image, 20, static_cast<std::uint16_t>(700 + i));
+    add_joints(0.0, image.stamp_ns);
+    EXPECT_EQ(elements(image), i == 1 ? 0u : 1u) << i;
+    EXPECT_EQ(sensors->status(0).frames, static_cast<std::uint64_t>(i - 1)) << i;
+  }
+}
+
 // The place of the cart is that of the stamp.
 TEST_F(KnownBodies, ThatAreTrackedAreLeftOutWhereTheyWereAtTheStamp) {
   begin(", knows: true, own_shell: 0.03");
