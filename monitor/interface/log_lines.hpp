@@ -375,6 +375,9 @@ inline constexpr LogLine<Text, std::int64_t> kPartnerClock{
     "partner-clock", kWarn,
     "the clock of partner '{}' differs from this machine's by about {} ms: keep both in step (PTP, "
     "NTP)"};
+inline constexpr LogLine<Text, Text, Count> kPartnerNoticeRefused{
+    "partner-notice-refused", kWarn,
+    "{} of partner '{}' with a time that no leader can have: not used ({} so far)"};
 inline constexpr LogLine<Text, Text, Text> kPartnerOtherBuild{
     "partner-other-build", kError,
     "partner '{}' is another build, {}, than this one, {}: neither can take over the other's "
