@@ -75,8 +75,22 @@ Command MoveItPort::translated(const moveit::RawScene& message, const Cell& cell
   return command;
 }
 
-void MoveItPort::coming(std::uint64_t revision) {
-  if (sharing_) note(current_, revision);
+void MoveItPort::coming(std::uint64_t revision, std::uint64_t command) {
+  if (sharing_) note(command != 0 ? command : current_, revision);
+}
+
+// A refused one may have been told of before it was to be in force.
+void MoveItPort::ended(std::uint64_t command, const CommandResult& result) {
+  if (!sharing_) return;
+  if (result.done()) return note(command, sharing_->revision());
+  const auto is_told = [&](const DoneSceneChange& change) { return change.message == command; };
+  if (std::erase_if(changes_, is_told) > 0) note(0, sharing_->revision());
+}
+
+bool MoveItPort::is_done(std::uint64_t command) {
+  if (!sharing_) return false;
+  go_on_from_heard(sharing_->revision());
+  return std::ranges::find(changes_, command, &DoneSceneChange::message) != changes_.end();
 }
 
 void MoveItPort::hear(const clearance_msg_PartnerScene& scene) {
@@ -175,7 +189,7 @@ void MoveItPort::note(std::uint64_t identity, std::uint64_t revision) {
                         changes_.back().scene_revision == revision;
   if (!is_known) changes_.push_back({identity, revision});
   if (changes_.size() > kMostChanges) changes_.erase(changes_.begin());
-  if (!sharing_->tell || !leads()) return;
+  if (!sharing_->tell) return;
   std::vector<std::byte> bytes;
   keeper_.save(bytes);
   sharing_->tell(changes_, bytes);

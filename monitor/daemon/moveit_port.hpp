@@ -1,6 +1,6 @@
 // Puts MoveIt's messages into the queue of commands, one after another. Only the leading partner of
 // the first share does so. Other daemons get the changed cell from it, and keep the files that it
-// names.
+// names. The leader tells its partner which message or command of a client led to which scene.
 #pragma once
 
 #include <cstddef>
@@ -38,9 +38,13 @@ class MoveItPort {
   void take(moveit::RawScene message);
   void close();
 
-  // The next three functions do nothing unless the messages are shared. The scene thread calls
-  // coming() when a scene of this revision comes into force.
-  void coming(std::uint64_t revision);
+  // The next five functions do nothing unless the messages are shared. The scene thread calls the
+  // first three: coming() when a scene of this revision comes into force, by this command of a
+  // client or by none (0), and ended() when that command is answered. is_done() returns whether
+  // the change that it asks for is in force: the leader before has done it.
+  void coming(std::uint64_t revision, std::uint64_t command);
+  void ended(std::uint64_t command, const CommandResult& result);
+  [[nodiscard]] bool is_done(std::uint64_t command);
   // The leading partner tells of this. Any thread but that of the tick.
   void hear(const clearance_msg_PartnerScene& scene);
   // Has to be called every few milliseconds, by any thread but that of the tick: this daemon may

@@ -53,10 +53,11 @@ QuestionResult malformed(MalformedField fault, QuestionResult of) {
   of.reason = std::move(fault.reason);
   return of;
 }
-GivenCommand queued(Command command, AnswerCommand answer) {
-  return {std::move(command), false, std::move(answer)};
+GivenCommand queued(Command command, AnswerCommand answer, std::uint64_t content) {
+  return {std::move(command), false, std::move(answer), content};
 }
-QueuedQuestion queued(MotionQuestion question, std::function<void(const QuestionResult&)> answer) {
+QueuedQuestion queued(MotionQuestion question, std::function<void(const QuestionResult&)> answer,
+                      std::uint64_t /*content*/) {
   return {std::move(question), std::move(answer)};
 }
 std::string too_many(const CommandTraffic&) {
@@ -176,7 +177,7 @@ void RequestPort<Traffic>::pass_on(Request request, const typename Ledger::Reque
     if (!result.done()) log_refusal(result);
     write(result);
   };
-  if (put_(queued(std::move(request), answer))) return;
+  if (put_(queued(std::move(request), answer, known_as.content))) return;
   ledger_.withdraw(known_as);
   answer_at_once({.client = known_as.client,
                   .request = known_as.number,

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <atomic>
 #include <cstring>
+#include <functional>
 #include <future>
 #include <mutex>
 #include <optional>
@@ -102,9 +103,12 @@ class SharedMoveItPort : public MoveItPortTest {
   }
   // The partner leads, and has done this message, after which that revision is in force.
   void hear(const moveit::RawScene& message, std::uint64_t revision) {
+    hear(message.identity(), revision);
+  }
+  void hear(std::uint64_t message, std::uint64_t revision) {
     Sample<clearance_msg_PartnerScene> sample;
     reserve_sequence(sample->changes, 1);
-    sample->changes._buffer[0] = {message.identity(), revision};
+    sample->changes._buffer[0] = {message, revision};
     sample->changes._length = 1;
     std::vector<std::byte> bytes;
     moveit::SceneKeeper().save(bytes);
@@ -114,14 +118,25 @@ class SharedMoveItPort : public MoveItPortTest {
     port_.hear(*sample);
     port_.update_lead();
   }
+  void in_scene_thread(const std::function<void()>& work) {
+    std::promise<void> done;
+    ASSERT_TRUE(thread_->put(OtherWork{[&] {
+      work();
+      done.set_value();
+    }}));
+    done.get_future().get();
+  }
   // Until the scene thread has done what waits.
   void finish() {
     for (int i = 0; i < 3; ++i) {
       port_.update_lead();
-      std::promise<void> done;
-      ASSERT_TRUE(thread_->put(OtherWork{[&] { done.set_value(); }}));
-      done.get_future().get();
+      in_scene_thread([] {});
     }
+  }
+  bool is_done(std::uint64_t command) {
+    bool done = false;
+    in_scene_thread([&] { done = port_.is_done(command); });
+    return done;
   }
   bool is_told(const moveit::RawScene& message) {
     const std::lock_guard lock(mutex_);
@@ -167,6 +182,28 @@ TEST_F(SharedMoveItPort, WhatTheOtherLeaderHadNotPutInForceIsDone) {
   leads = true;
   finish();
   EXPECT_NE(object("a"), nullptr);
+}
+
+TEST_F(SharedMoveItPort, ACommandThatTheOtherLeaderHasPutInForceIsDone) {
+  hear(7, revision());
+  leads = true;
+  EXPECT_TRUE(is_done(7));
+  EXPECT_FALSE(is_done(8));
+}
+
+TEST_F(SharedMoveItPort, ACommandWhoseChangeIsLostWithTheOtherLeaderIsNotDone) {
+  hear(7, revision() + 1);
+  leads = true;
+  EXPECT_FALSE(is_done(7));
+}
+
+TEST_F(SharedMoveItPort, ACommandThatWasRefusedAfterItWasToldOfIsNotDone) {
+  leads = true;
+  finish();
+  in_scene_thread([this] { port_.coming(revision() + 1, 7); });
+  EXPECT_TRUE(is_done(7));
+  in_scene_thread([this] { port_.ended(7, {.status = CommandStatus::kTooSlow}); });
+  EXPECT_FALSE(is_done(7));
 }
 
 TEST_F(SharedMoveItPort, AMessageThatWasQueuedIsNotDoneOnceTheOtherOneLeads) {
