@@ -9,8 +9,10 @@
 #include <mutex>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "monitor/app/line_limit.hpp"
 #include "monitor/daemon/scene_turns.hpp"
 #include "monitor/intake/scene_keeper.hpp"
 #include "monitor/requests/scene_task.hpp"
@@ -62,6 +64,7 @@ class MoveItPort {
   [[nodiscard]] MadeCommand command(const SceneTurns::Message& message, std::uint64_t identity);
   [[nodiscard]] Command translated(const moveit::RawScene& message, const Cell& cell,
                                    const AskPose& pose);
+  void log_refusal(const std::string& topic, const std::string& path, const std::string& reason);
   // With the mutex held.
   [[nodiscard]] bool leads() const { return sharing_->leads && sharing_->leads(); }
   void put_waiting();
@@ -72,6 +75,7 @@ class MoveItPort {
   void ended(std::uint64_t identity, std::uint64_t revision);
   void note(std::uint64_t identity, std::uint64_t revision);
 
+  LineLimit refusal_lines_{lines::kMoveItLinesLeftOut}, left_out_lines_{lines::kMoveItLinesLeftOut};
   std::optional<Sharing> sharing_;  // none: this daemon applies all messages at once
   std::mutex mutex_;                // guards what follows
   Put put_;                         // empty: closed

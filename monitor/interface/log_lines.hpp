@@ -56,6 +56,8 @@ inline constexpr LogLine<Text> kQuestionsLeftOut{"questions-left-out", kWarn,
 inline constexpr LogLine<Text> kMoveItLeftOut{"moveit-left-out", kWarn, "MoveIt's {}"};
 inline constexpr LogLine<Text, Text, Text> kMoveItRefused{
     "moveit-refused", kWarn, "a message of MoveIt on {} changes nothing: {}{}"};
+inline constexpr LogLine<Text> kMoveItLinesLeftOut{"moveit-lines-left-out", kWarn,
+                                                   "{} about messages of MoveIt left out"};
 inline constexpr LogLine<Text, Count, Count> kTooManyBodies{
     "too-many-bodies", kError,
     "{} has {} bodies and the cell {} persons: the last person is unknown and stands for the rest"};

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cstring>
 #include <functional>
 #include <future>
@@ -17,6 +18,7 @@
 #include "monitor/requests/scene_thread.hpp"
 #include "tests/monitor/intake/moveit_messages.hpp"
 #include "tests/monitor/requests/commanded_cell.hpp"
+#include "tests/shared/logged.hpp"
 
 namespace clearance {
 namespace {
@@ -86,6 +88,22 @@ TEST_F(MoveItPortTest, WhatTheCapacityDoesNotAllowIsRefusedAndTheNextMessageCoun
   EXPECT_EQ(take(sphere("c", "world")).status, CommandStatus::kBeyondCapacity);
   EXPECT_TRUE(take(removal("a")).done());
   EXPECT_TRUE(take(sphere("c", "world")).done());
+}
+
+// Two programs send scenes that this cell refuses, as fast as they can.
+TEST_F(MoveItPortTest, RefusedMessagesAtAnyRateGiveFiveLinesASecond) {
+  const auto logged = std::make_shared<test::Logged>();
+  const test::LoggedTo to(logged);
+  for (const char* name : {"a", "b"}) EXPECT_TRUE(take(sphere(name, "world")).done());
+  const auto began = std::chrono::steady_clock::now();
+  for (int i = 0; i < 100; ++i) {
+    for (const char* name : {"c", "d"}) EXPECT_FALSE(take(sphere(name, "world")).done());
+  }
+  const auto seconds =
+      std::chrono::duration_cast<std::chrono::seconds>(std::chrono::steady_clock::now() - began);
+  EXPECT_GE(logged->count("[moveit-refused]"), 5u);
+  EXPECT_LE(logged->count("[moveit-refused]"),
+            5u * (static_cast<std::size_t>(seconds.count()) + 2));
 }
 
 // Beside a partner, which the test plays.
