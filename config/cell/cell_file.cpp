@@ -168,6 +168,8 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   if (options_.mesh_errors != nullptr) *options_.mesh_errors = std::move(list.mesh_errors);
   refuse_same_names(list, diagnostics_);
   refuse_too_many_sources(list, robots.variables, robots_node, diagnostics_);
+  const std::string note = note_on_sources(list, robots.robots, robots.variables);
+  if (!note.empty() && !robots.robots.empty()) robots.robots.front().notes.push_back(note);
   GroupIndex group_index(list, diagnostics_);
   if (ros_ != nullptr && cell.ros.moveit.adds_objects())
     group_index.declare(cell.ros.moveit.group, *ros_, "found MoveIt's messages");

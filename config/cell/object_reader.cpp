@@ -322,4 +322,25 @@ void refuse_too_many_sources(const ObjectList& list, const std::vector<JointVari
   for (const JointVariable& joint : joints) add(joint.source, *robots);
 }
 
+std::string note_on_sources(const ObjectList& list, std::span<const Robot> robots,
+                            std::span<const JointVariable> joints) {
+  std::set<std::string> sources;
+  for (const Object& object : list.objects) {
+    sources.insert(object.source);
+    if (!object.frame.empty()) sources.insert("/tf");
+  }
+  for (const JointVariable& joint : joints) sources.insert(joint.source);
+  for (const Robot& robot : robots) {
+    sources.insert(robot.joint_states);
+    if (!robot.base.frame.empty()) sources.insert("/tf:bases");
+  }
+  sources.erase("");
+  constexpr std::size_t kHeard = kMaxNamedSources + 1;
+  if (sources.size() <= kHeard) return {};
+  return fmt::format(
+      "the cell can need {} sources, but {} are heard at a time: the others will be refused "
+      "([source-refused]). Let robots share topics of joint states, or divide the cell into shares",
+      sources.size(), kHeard);
+}
+
 }  // namespace clearance

@@ -6,6 +6,7 @@
 #include <map>
 #include <optional>
 #include <set>
+#include <span>
 #include <string>
 #include <utility>
 #include <vector>
@@ -90,5 +91,10 @@ void refuse_same_names(const ObjectList& list, Diagnostics& diagnostics);
 // accepted.
 void refuse_too_many_sources(const ObjectList& list, const std::vector<JointVariable>& joints,
                              const YamlNode* robots, Diagnostics& diagnostics);
+
+// A sentence for a person if the cell can need more sources than are heard at a time: named ones,
+// topics of joint states, and tf for objects and for bases. Else empty.
+[[nodiscard]] std::string note_on_sources(const ObjectList& list, std::span<const Robot> robots,
+                                          std::span<const JointVariable> joints);
 
 }  // namespace clearance

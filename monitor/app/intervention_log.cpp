@@ -18,12 +18,14 @@
 
 #include "config/text/file_bytes.hpp"
 #include "monitor/app/log_line.hpp"
+#include "monitor/files/numbered_file.hpp"
 
 namespace clearance {
 namespace {
 
 using nlohmann::ordered_json;
 
+constexpr int kMode = 0640;
 // The pause between two attempts to write.
 constexpr std::chrono::seconds kPause{1};
 // Bytes of a torn line that its successor keeps.
@@ -66,7 +68,8 @@ void note_intervention(std::string_view code, std::string_view text) {
   if (open_log != nullptr) open_log->note(code, {{"text", text}});
 }
 
-InterventionLog::InterventionLog(std::filesystem::path file) : file_(std::move(file)) {
+InterventionLog::InterventionLog(std::filesystem::path file, std::uint64_t largest)
+    : file_(std::move(file)), largest_(largest) {
   open();
   thread_ = std::thread([this] {
     pthread_setname_np(pthread_self(), "interventions");
@@ -88,7 +91,6 @@ InterventionLog::~InterventionLog() {
 
 // Locks the file: two programs would both follow the same line.
 void InterventionLog::open() {
-  constexpr int kMode = 0640;
   descriptor_ = ::open(file_.c_str(), O_RDWR | O_CREAT | O_APPEND | O_CLOEXEC | O_NONBLOCK, kMode);
   struct stat status {};
   const auto fail = [this](const std::string& why) {
@@ -101,7 +103,8 @@ void InterventionLog::open() {
   if (::flock(descriptor_, LOCK_EX | LOCK_NB) != 0)
     fail("is written by another program: give each daemon a file of its own");
   ChainedLog log = read_chained_log(file_);
-  if (!log.error.empty()) fail("cannot be read: " + log.error);
+  if (!log.error.empty())
+    fail("cannot be read: " + log.error + "; move it away, or name another file");
   end_ = std::move(log.end);
   size_ = static_cast<std::uint64_t>(status.st_size) - log.torn.size();
   log_line(lines::kInterventions, file_.string(), end_.number, end_.hash);
@@ -170,11 +173,32 @@ std::string InterventionLog::changed_by_others() const {
                      size_);
 }
 
+// If it fails, the lines go on in the same file.
+void InterventionLog::begin_next_file() {
+  const std::filesystem::path former = first_free(next_number(file_));
+  if (::rename(file_.c_str(), former.c_str()) != 0) return;
+  const int next =
+      ::open(file_.c_str(), O_RDWR | O_CREAT | O_EXCL | O_APPEND | O_CLOEXEC | O_NONBLOCK, kMode);
+  if (next < 0 || ::flock(next, LOCK_EX | LOCK_NB) != 0) {
+    if (next >= 0) ::close(next);
+    (void)::rename(former.c_str(), file_.c_str());
+    return;
+  }
+  ::close(std::exchange(descriptor_, next));
+  size_ = 0;
+  log_line(lines::kInterventions, former.string(), end_.number, end_.hash);
+  continues_ =
+      members({{"file", former.filename().string()}, {"lines", end_.number}, {"last", end_.hash}});
+  end_ = {};
+}
+
 // Removes what was written of a line if it fails, so that run() can write it again.
 std::string InterventionLog::write(const Entry& entry, std::uint64_t left_out) {
+  if (size_ >= largest_) begin_next_file();
   ChainEnd end = end_;
   std::string text;
-  if (left_out > 0) text = next_line(end, now_ns(), "left-out", members({{"count", left_out}}));
+  if (!continues_.empty()) text = next_line(end, now_ns(), "continues", continues_);
+  if (left_out > 0) text += next_line(end, now_ns(), "left-out", members({{"count", left_out}}));
   text += next_line(end, entry.time_ns, entry.kind, entry.fields);
   if (!write_bytes(descriptor_, text) || ::fdatasync(descriptor_) != 0) {
     const int error = errno;
@@ -182,6 +206,7 @@ std::string InterventionLog::write(const Entry& entry, std::uint64_t left_out) {
     return std::strerror(error);
   }
   size_ += text.size();
+  continues_.clear();
   end_ = std::move(end);
   return {};
 }

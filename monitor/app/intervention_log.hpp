@@ -27,16 +27,19 @@ class InterventionError : public std::runtime_error {
 // A thread of its own writes the lines, so that no other waits for the disk. Lines that find kMost
 // others waiting are left out, and the next line counts them. If the disk is full, the thread
 // tries again each second. A file that another program has changed, moved or deleted gets no more
-// lines.
+// lines. One that has grown large is renamed (files/numbered_file.hpp), and its successor begins
+// with a line that holds the hash of its last one.
 //
 // While it lives, log lines that tell of an intervention (is_intervention()) go into it, too.
 class InterventionLog {
  public:
   static constexpr std::size_t kMost = 1024;
+  static constexpr std::uint64_t kLargest = 128
+                                            << 20;  // bytes; a file of twice that cannot be read
 
   // Begins the file, or goes on behind its last line. What stands behind the last line break was
   // never a whole line: it is cut off, and a line keeps it. Throws InterventionError.
-  explicit InterventionLog(std::filesystem::path file);
+  explicit InterventionLog(std::filesystem::path file, std::uint64_t largest = kLargest);
   ~InterventionLog();
   InterventionLog(const InterventionLog&) = delete;
   InterventionLog& operator=(const InterventionLog&) = delete;
@@ -59,15 +62,18 @@ class InterventionLog {
   };
   void open();
   void run();
+  void begin_next_file();
   // Each returns why it failed; empty: it is done.
   [[nodiscard]] std::string write(const Entry& entry, std::uint64_t left_out);
   [[nodiscard]] std::string changed_by_others() const;
 
   const std::filesystem::path file_;
+  const std::uint64_t largest_;
   int descriptor_ = -1;
   std::uint64_t size_ = 0;  // of the whole lines
   ChainEnd end_;
-  std::mutex mutex_;  // guards what follows
+  std::string continues_;  // fields of the first line of a file that goes on from another
+  std::mutex mutex_;       // guards what follows
   std::condition_variable news_;
   std::deque<Entry> waiting_;
   std::uint64_t left_out_ = 0;

@@ -115,7 +115,7 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
   scene_thread_ =
       std::make_unique<SceneThread>(*changer_, *loop_, loop_ended_, std::move(options_.commander));
   if (partner_) share_states();
-  if (cell.ros.moveit.any()) share_moveit();
+  if (partner_ || cell.ros.moveit.any()) share_scenes();
   clients_ = std::make_unique<ClientPorts>(now_.cell, participant_, reports_.daemon(), *loop_,
                                            loop_ended_, client_actions());
 }
@@ -292,7 +292,7 @@ void Daemon::note_start() const {
 }
 
 std::vector<ReportSink*> Daemon::prepare(const std::shared_ptr<const Cell>& cell) {
-  moveit_.coming(cell->scene.revision);
+  moveit_.coming(cell->scene.revision, scene_thread_->in_hand());
   next_ = parts_of(cell);
   std::vector<ReportSink*> sinks{next_.queue.get()};
   if (ReportSink* const sink = recording_ ? recording_->prepare(cell) : nullptr)

@@ -117,7 +117,7 @@ class Daemon : private CellParts {
   [[nodiscard]] CellReload::Actions reload_actions();
   [[nodiscard]] ClientPorts::Actions client_actions();
   [[nodiscard]] PartnerPort::Actions partner_actions();
-  void share_moveit();
+  void share_scenes();
   void stop_sharing();
   [[nodiscard]] RosWrites::Leads leads();
   void tick_thread(std::atomic<bool>& done);

@@ -40,7 +40,16 @@ ClientPorts::Actions Daemon::client_actions() {
       .leads = leads()};
   if (!partner_) return actions;
   actions.put = [this](GivenCommand given) {
-    return put(partner_states_->for_both(std::move(given)));
+    const std::uint64_t identity = given.identity;
+    const bool is_dry = given.command.dry_run;
+    given = partner_states_->for_both(std::move(given));
+    given.is_done = [this, identity] { return moveit_.is_done(identity); };
+    given.answer = [this, identity, is_dry,
+                    answer = std::move(given.answer)](const CommandResult& result) {
+      if (!is_dry) moveit_.ended(identity, result);
+      answer(result);
+    };
+    return put(std::move(given));
   };
   actions.commands.takes =
       actions.questions.takes = [this] { return partner_states_->takes_requests(); };
@@ -60,8 +69,8 @@ std::optional<std::string> Daemon::followed() const {
 }
 
 // In a cell in shares, the daemon of the first share does MoveIt's messages.
-void Daemon::share_moveit() {
-  if (now_.cell->shares.is_one()) {
+void Daemon::share_scenes() {
+  if (now_.cell->ros.moveit.any() && now_.cell->shares.is_one()) {
     shares_ = std::make_unique<ShareScenes>(
         *now_.cell, participant_,
         ShareScenes::Actions{.put = [this](SceneTask task) { return put(std::move(task)); },
@@ -77,7 +86,7 @@ void Daemon::share_moveit() {
   MoveItPort::Sharing sharing{.leads = leads(), .revision = [this] { return revision_.load(); }};
   if (partner_) {
     sharing.tell = [port = &partner_->port](auto changes, auto bytes) {
-      port->send_scene(changes, bytes);
+      if (port->leads()) port->send_scene(changes, bytes);
     };
   }
   if (shares_) {
@@ -91,7 +100,6 @@ void Daemon::share_moveit() {
 
 PartnerPort::Actions Daemon::partner_actions() {
   PartnerPort::Actions actions = partner_states_->actions();
-  if (!now_.cell->ros.moveit.any()) return actions;
   actions.hear_scene = [this](const auto& scene) { moveit_.hear(scene); };
   actions.update_lead = [this] { moveit_.update_lead(); };
   return actions;

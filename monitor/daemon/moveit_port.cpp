@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "monitor/app/log_line.hpp"
+#include "monitor/loop/ports.hpp"
 
 namespace clearance {
 
@@ -18,18 +19,23 @@ void MoveItPort::take(moveit::RawScene message) {
   const auto shared = std::make_shared<const moveit::RawScene>(std::move(message));
   if (!sharing_) {
     if (!put_(command(shared, 0)))
-      log_line(lines::kMoveItRefused, shared->topic, "",
-               "too many commands wait, so that it is lost");
+      log_refusal(shared->topic, "", "too many commands wait, so that it is lost");
     return;
   }
   if (const std::size_t lost = turns_.add(shared, shared->identity()); lost > 0)
-    log_line(lines::kMoveItRefused, shared->topic, "",
-             fmt::format("too many messages wait, so that the first {} of them are lost", lost));
+    log_refusal(shared->topic, "",
+                fmt::format("too many messages wait, so that the first {} of them are lost", lost));
   if (leads()) {
     put_waiting();
   } else {
     keep_files();
   }
+}
+
+void MoveItPort::log_refusal(const std::string& topic, const std::string& path,
+                             const std::string& reason) {
+  if (refusal_lines_.admits(SystemClock().monotonic_ns()))
+    log_line(lines::kMoveItRefused, topic, path, reason);
 }
 
 void MoveItPort::close() {
@@ -56,8 +62,7 @@ MadeCommand MoveItPort::command(const SceneTurns::Message& message, std::uint64_
   queued.answer = [this, message, identity](const CommandResult& result) {
     if (!result.done()) {
       keeper_.take_back();
-      log_line(lines::kMoveItRefused, message->topic, result.path.empty() ? "" : result.path + ": ",
-               result.reason);
+      log_refusal(message->topic, result.path.empty() ? "" : result.path + ": ", result.reason);
     }
     if (identity != 0) ended(identity, sharing_->revision());
   };
@@ -67,7 +72,10 @@ MadeCommand MoveItPort::command(const SceneTurns::Message& message, std::uint64_
 Command MoveItPort::translated(const moveit::RawScene& message, const Cell& cell,
                                const AskPose& pose) {
   moveit::SceneKeeper::Work work = keeper_.take(message, cell, pose);
-  for (const std::string& sentence : work.news) log_line(lines::kMoveItLeftOut, sentence);
+  for (const std::string& sentence : work.news) {
+    if (left_out_lines_.admits(SystemClock().monotonic_ns()))
+      log_line(lines::kMoveItLeftOut, sentence);
+  }
   Command command;
   command.changes = std::move(work.changes);
   for (moveit::MeshFile& file : work.files)
@@ -75,8 +83,22 @@ Command MoveItPort::translated(const moveit::RawScene& message, const Cell& cell
   return command;
 }
 
-void MoveItPort::coming(std::uint64_t revision) {
-  if (sharing_) note(current_, revision);
+void MoveItPort::coming(std::uint64_t revision, std::uint64_t command) {
+  if (sharing_) note(command != 0 ? command : current_, revision);
+}
+
+// A refused one may have been told of before it was to be in force.
+void MoveItPort::ended(std::uint64_t command, const CommandResult& result) {
+  if (!sharing_) return;
+  if (result.done()) return note(command, sharing_->revision());
+  const auto is_told = [&](const DoneSceneChange& change) { return change.message == command; };
+  if (std::erase_if(changes_, is_told) > 0) note(0, sharing_->revision());
+}
+
+bool MoveItPort::is_done(std::uint64_t command) {
+  if (!sharing_) return false;
+  go_on_from_heard(sharing_->revision());
+  return std::ranges::find(changes_, command, &DoneSceneChange::message) != changes_.end();
 }
 
 void MoveItPort::hear(const clearance_msg_PartnerScene& scene) {
@@ -175,7 +197,7 @@ void MoveItPort::note(std::uint64_t identity, std::uint64_t revision) {
                         changes_.back().scene_revision == revision;
   if (!is_known) changes_.push_back({identity, revision});
   if (changes_.size() > kMostChanges) changes_.erase(changes_.begin());
-  if (!sharing_->tell || !leads()) return;
+  if (!sharing_->tell) return;
   std::vector<std::byte> bytes;
   keeper_.save(bytes);
   sharing_->tell(changes_, bytes);

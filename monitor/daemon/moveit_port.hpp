@@ -1,6 +1,6 @@
 // Puts MoveIt's messages into the queue of commands, one after another. Only the leading partner of
 // the first share does so. Other daemons get the changed cell from it, and keep the files that it
-// names.
+// names. The leader tells its partner which message or command of a client led to which scene.
 #pragma once
 
 #include <cstddef>
@@ -9,8 +9,10 @@
 #include <mutex>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
+#include "monitor/app/line_limit.hpp"
 #include "monitor/daemon/scene_turns.hpp"
 #include "monitor/intake/scene_keeper.hpp"
 #include "monitor/requests/scene_task.hpp"
@@ -38,9 +40,13 @@ class MoveItPort {
   void take(moveit::RawScene message);
   void close();
 
-  // The next three functions do nothing unless the messages are shared. The scene thread calls
-  // coming() when a scene of this revision comes into force.
-  void coming(std::uint64_t revision);
+  // The next five functions do nothing unless the messages are shared. The scene thread calls the
+  // first three: coming() when a scene of this revision comes into force, by this command of a
+  // client or by none (0), and ended() when that command is answered. is_done() returns whether
+  // the change that it asks for is in force: the leader before has done it.
+  void coming(std::uint64_t revision, std::uint64_t command);
+  void ended(std::uint64_t command, const CommandResult& result);
+  [[nodiscard]] bool is_done(std::uint64_t command);
   // The leading partner tells of this. Any thread but that of the tick.
   void hear(const clearance_msg_PartnerScene& scene);
   // Has to be called every few milliseconds, by any thread but that of the tick: this daemon may
@@ -58,6 +64,7 @@ class MoveItPort {
   [[nodiscard]] MadeCommand command(const SceneTurns::Message& message, std::uint64_t identity);
   [[nodiscard]] Command translated(const moveit::RawScene& message, const Cell& cell,
                                    const AskPose& pose);
+  void log_refusal(const std::string& topic, const std::string& path, const std::string& reason);
   // With the mutex held.
   [[nodiscard]] bool leads() const { return sharing_->leads && sharing_->leads(); }
   void put_waiting();
@@ -68,6 +75,7 @@ class MoveItPort {
   void ended(std::uint64_t identity, std::uint64_t revision);
   void note(std::uint64_t identity, std::uint64_t revision);
 
+  LineLimit refusal_lines_{lines::kMoveItLinesLeftOut}, left_out_lines_{lines::kMoveItLinesLeftOut};
   std::optional<Sharing> sharing_;  // none: this daemon applies all messages at once
   std::mutex mutex_;                // guards what follows
   Put put_;                         // empty: closed

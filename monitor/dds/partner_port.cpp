@@ -4,6 +4,7 @@
 #include <cstring>
 #include <utility>
 
+#include "config/text/sentences.hpp"
 #include "monitor/app/log_line.hpp"
 #include "monitor/files/build_info.hpp"
 #include "monitor/inputs/checksum.hpp"
@@ -145,8 +146,9 @@ void PartnerPort::hear() {
   }
 }
 
-// After a time without any notice, clocks may have drifted apart. If this process was stopped, how
-// long notices waited for it says nothing of the clocks: their delay is the one before, or none.
+// After a time without any notice, clocks may have drifted apart, and one that steps makes the
+// least delay wrong. If this process was stopped, how long notices waited for it says nothing of
+// the clocks: their delay is the one before, or none.
 void PartnerPort::hear_notices() {
   dds_sample_info_t info;
   const std::int64_t now = SystemClock().monotonic_ns();
@@ -157,8 +159,10 @@ void PartnerPort::hear_notices() {
     const std::int64_t sent = info.source_timestamp;
     const std::int64_t before = delay_.is_known() ? delay_.least() : 0;
     const bool waited = sent + before < went_on_ns_;
-    if (!waited && std::exchange(is_delay_old_, false)) delay_ = {};
-    hear_notice(waited ? before : delay_.add(dds_time() - sent));
+    const std::int64_t delay = dds_time() - sent;
+    const bool has_stepped = delay_.is_known() && delay - before > kHeldUpNs;
+    if (!waited && (std::exchange(is_delay_old_, false) || has_stepped)) delay_ = {};
+    hear_notice(waited ? before : delay_.add(delay));
   }
 }
 
@@ -275,6 +279,13 @@ void PartnerPort::poll() {
   ticks_.set_partner_present(reports_.hears_any());
   const PartnerStanding standing = ticks_.standing();
   const std::int64_t now = SystemClock().monotonic_ns();
+  const std::uint64_t refused = ticks_.refused_notices();
+  if (refused > refused_told_ && now - refusal_told_ns_ > kStandAgainNs) {
+    log_line(lines::kPartnerNoticeRefused,
+             counted(refused - std::exchange(refused_told_, refused), "notice"), partner(),
+             refused);
+    refusal_told_ns_ = now;
+  }
   if (standing != told_ && now - told_ns_ > kStandAgainNs) {
     told_ = standing;
     told_ns_ = now;

@@ -126,7 +126,8 @@ class PartnerPort {
   bool is_delay_old_ = true;     // the next notice that did not wait begins a new one
   std::uint64_t offered_ = 0;    // the revision that take_cell() got last
   std::int64_t offered_ns_ = 0;
-  std::int64_t asked_ns_ = 0, told_ns_ = 0;
+  std::int64_t asked_ns_ = 0, told_ns_ = 0, refusal_told_ns_ = 0;
+  std::uint64_t refused_told_ = 0;  // notices
   bool clock_told_ = false, refusal_told_ = false;
   PartnerStanding told_ = PartnerStanding::kStarting;
   Sample<clearance_msg_PartnerTick> heard_, written_;

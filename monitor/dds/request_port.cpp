@@ -17,8 +17,6 @@ namespace {
 
 // Answers to clients that are not named: a name costs memory for as long as the daemon runs.
 constexpr std::size_t kMostStrangers = 64;
-// Lines about refusals in a second.
-constexpr std::uint64_t kMostLines = 5;
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 
 // The bytes of a request that is sent again are the same.
@@ -53,10 +51,11 @@ QuestionResult malformed(MalformedField fault, QuestionResult of) {
   of.reason = std::move(fault.reason);
   return of;
 }
-GivenCommand queued(Command command, AnswerCommand answer) {
-  return {std::move(command), false, std::move(answer)};
+GivenCommand queued(Command command, AnswerCommand answer, std::uint64_t content) {
+  return {std::move(command), false, std::move(answer), content};
 }
-QueuedQuestion queued(MotionQuestion question, std::function<void(const QuestionResult&)> answer) {
+QueuedQuestion queued(MotionQuestion question, std::function<void(const QuestionResult&)> answer,
+                      std::uint64_t /*content*/) {
   return {std::move(question), std::move(answer)};
 }
 std::string too_many(const CommandTraffic&) {
@@ -83,6 +82,7 @@ RequestPort<Traffic>::RequestPort(const Cell& cell, const std::vector<std::strin
       revision_(std::move(revision)),
       sharing_(std::move(sharing)),
       ledger_(clients, Traffic::kKey),
+      refusal_lines_(left_out_line(Traffic{})),
       reader_(make_reader<Traffic>(cell, participant, names_, lapsed_)),
       results_(participant.writer(Traffic::kResults, cell.topics.*topic(Traffic::kResults).name)),
       wait_(participant, {reader_}) {}
@@ -176,7 +176,7 @@ void RequestPort<Traffic>::pass_on(Request request, const typename Ledger::Reque
     if (!result.done()) log_refusal(result);
     write(result);
   };
-  if (put_(queued(std::move(request), answer))) return;
+  if (put_(queued(std::move(request), answer, known_as.content))) return;
   ledger_.withdraw(known_as);
   answer_at_once({.client = known_as.client,
                   .request = known_as.number,
@@ -203,20 +203,9 @@ void RequestPort<Traffic>::write(const Result& result) {
   dds_write(results_, &*message);
 }
 
-// Many refusals must not fill the log.
 template <class Traffic>
 void RequestPort<Traffic>::log_refusal(const Result& result) {
-  const std::int64_t second = SystemClock().monotonic_ns() / kSecondNs;
-  const std::lock_guard lock(mutex_);
-  if (second != log_second_) {
-    if (left_out_ > 0) log_line(left_out_line(Traffic{}), counted(left_out_, "line"));
-    log_second_ = second;
-    logged_ = left_out_ = 0;
-  }
-  if (++logged_ > kMostLines) {
-    ++left_out_;
-    return;
-  }
+  if (!refusal_lines_.admits(SystemClock().monotonic_ns())) return;
   log_line(refusal_line(Traffic{}), result.client, result.request, name_of(result.status),
            result.path.empty() ? result.reason : fmt::format("{}: {}", result.path, result.reason));
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "config/cell/cell.hpp"
+#include "monitor/app/line_limit.hpp"
 #include "monitor/dds/name_limit.hpp"
 #include "monitor/dds/request_ledger.hpp"
 #include "monitor/participant/cdr_sample.hpp"
@@ -91,9 +92,8 @@ class RequestPort {
   Ledger ledger_;
   NameLimit names_;
   std::set<std::string> strangers_;  // clients that are not named and were answered
-  std::mutex mutex_;                 // guards what follows: results also come from other threads
-  std::int64_t log_second_ = 0;
-  std::uint64_t logged_ = 0, left_out_ = 0;  // refusals in that second
+  std::mutex mutex_;                 // of results, which also come from other threads
+  LineLimit refusal_lines_;
   LapsedWriters lapsed_;
   dds_entity_t reader_, results_;
   DataWait wait_;

@@ -17,6 +17,8 @@ namespace clearance {
 inline constexpr std::int64_t kForgottenNs = 3'155'760'000'000'000'000;
 // A source that was silent for longer has lost its inputs: others may send them.
 inline constexpr std::int64_t kSourceSilentNs = 1'000'000'000;
+// Another source that was silent for longer has gone.
+inline constexpr std::int64_t kOtherGoneNs = 10 * kSourceSilentNs;
 
 template <class Source, Source kNobody>
 class Owner {
@@ -37,6 +39,7 @@ class Owner {
     }
     if (!is_held(now_ns, age_limit_ns)) return false;
     other_ = source;
+    other_heard_ns_ = now_ns;
     return true;
   }
 
@@ -61,8 +64,8 @@ class Owner {
 
   // The owner does not exist any more.
   void leave() noexcept { source_ = kNobody; }
-  // The age of the last sample is not known any more: it counts from now.
-  void forget_age(std::int64_t now_ns) noexcept { heard_ns_ = now_ns; }
+  // The ages of the last samples are not known any more: they count from now.
+  void forget_age(std::int64_t now_ns) noexcept { heard_ns_ = other_heard_ns_ = now_ns; }
 
   // True if the cell names the source: what others send is then no dispute.
   [[nodiscard]] bool is_stated() const noexcept { return is_stated_; }
@@ -70,8 +73,11 @@ class Owner {
   [[nodiscard]] std::uint32_t takeovers() const noexcept { return takeovers_; }
   [[nodiscard]] Source former_source() const noexcept { return former_; }
   [[nodiscard]] Source source() const noexcept { return source_; }
-  // The last source that was refused because it is not the owner. kNobody after the owner changed.
-  [[nodiscard]] Source other_source() const noexcept { return other_; }
+  // The last source that was refused because it is not the owner. kNobody after the owner changed,
+  // and once that source has gone.
+  [[nodiscard]] Source other_source(std::int64_t now_ns) const noexcept {
+    return elapsed(other_heard_ns_, now_ns) <= kOtherGoneNs ? other_ : kNobody;
+  }
   // `own`: what the scene states.
   [[nodiscard]] bool is_sound(const Owner& own) const noexcept {
     return are_flags(is_stated_) && is_stated_ == own.is_stated_ &&
@@ -86,6 +92,7 @@ class Owner {
   Source other_ = kNobody;
   Source former_ = kNobody;
   std::uint32_t takeovers_ = 0;
+  std::int64_t other_heard_ns_ = 0;  // last sample of the other source, in the tick's time
 };
 
 using InputOwner = Owner<std::uint32_t, kNoSource>;

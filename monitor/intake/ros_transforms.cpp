@@ -110,6 +110,7 @@ bool RosTransforms::decode(std::uint32_t port, const RawMessage& message, const 
           {message.cdr.begin(), message.cdr.end()},
           message.bytes});
   }
+  placed_twice_ = TfFrames::placed_twice(*message_, topic.is_static);
   for (std::uint32_t i = 0; i < message_->transforms._length; ++i) {
     take(message_->transforms._buffer[i], port, message, now, counts);
   }
@@ -147,11 +148,14 @@ void RosTransforms::take(const Transform& transform, std::uint32_t port, const R
 
 // A refused transform does not change its frame, which therefore becomes late.
 bool RosTransforms::is_usable(const std::string& child, const TfTree::Link& link) {
-  if (!TfFrames::is_transform(child, link)) {
+  const bool is_placed_twice = placed_twice_.contains(child);
+  if (is_placed_twice || !TfFrames::is_transform(child, link)) {
     const bool has_names = !child.empty() && !link.parent.empty() && child != link.parent;
     if (refused_said_.size() < TfFrames::kMostFrames && refused_said_.insert(child).second) {
-      const char* const why = has_names ? "no pose (not finite, or a quaternion not of unit length)"
-                                        : "a frame without a name, or its own parent";
+      const char* const why = !has_names        ? "a frame without a name, or its own parent"
+                              : is_placed_twice ? "two poses at one time in one message"
+                                                : "no pose (not finite, or a quaternion not of "
+                                                  "unit length)";
       out_.tell(News(lines::kFrameRefused, child, link.parent, why));
     }
     return false;

@@ -104,6 +104,7 @@ class RosTransforms final : public Decoder {
   std::vector<Topic> topics_;  // by port
   CdrDecoder decoder_;
   Sample<tf2_msgs_msg_dds__TFMessage_> message_;
+  std::set<std::string> placed_twice_;  // frames of this message
   TfFrames claims_;
   std::set<std::string> rivals_said_;                // child frames
   std::map<std::uint64_t, StampCheck> stamps_;       // by publisher

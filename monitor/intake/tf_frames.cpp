@@ -46,6 +46,23 @@ bool TfFrames::is_transform(const std::string& child, const TfTree::Link& link) 
          !link.parent.empty() && child != link.parent;
 }
 
+std::set<std::string> TfFrames::placed_twice(const tf2_msgs_msg_dds__TFMessage_& message,
+                                             bool is_static) {
+  std::map<std::pair<std::string, std::int64_t>, TfTree::Link> links;
+  std::set<std::string> twice;
+  for (std::uint32_t i = 0; i < message.transforms._length; ++i) {
+    const auto& each = message.transforms._buffer[i];
+    const TfTree::Link link{.parent = frame_name(each.header.frame_id),
+                            .parent_from_child = pose_of(each.transform),
+                            .stamp_ns = std::nullopt};
+    const std::string child = frame_name(each.child_frame_id);
+    const auto [first, is_new] =
+        links.try_emplace({child, is_static ? 0 : stamp_ns(each.header)}, link);
+    if (!is_new && !says_the_same(first->second, link)) twice.insert(child);
+  }
+  return twice;
+}
+
 std::span<const TfFrames::Claim> TfFrames::claims(const std::string& child) const {
   const auto found = frames_.find(child);
   return found == frames_.end() ? std::span<const Claim>() : std::span(found->second.claims);

@@ -62,6 +62,10 @@ class TfFrames {
   // True if the transform is a pose, and its frames have names.
   [[nodiscard]] static bool is_transform(const std::string& child,
                                          const TfTree::Link& link) noexcept;
+  // The frames that one message places twice at one time, and not alike: neither could be meant.
+  // All transforms of a static frame are of one time.
+  [[nodiscard]] static std::set<std::string> placed_twice(
+      const tf2_msgs_msg_dds__TFMessage_& message, bool is_static);
   // True if the frame is new, and there are too many. Transforms that are kept need memory.
   [[nodiscard]] bool is_one_too_many(const std::string& child) const {
     const std::size_t most = kept_ > 0 ? kMostFrames / 4 : kMostFrames;

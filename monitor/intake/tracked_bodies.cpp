@@ -76,10 +76,11 @@ void TrackedBodies::hand_on(std::vector<std::string> bodies, const RawMessage& m
   const bool is_news = std::exchange(is_silent_, false) || bodies != bodies_ ||
                        handed_on_ns_ == 0 || now.monotonic_ns - handed_on_ns_ >= kSilentNs;
   if (!is_news) return;
-  const bool too_many = bodies.size() > persons_;
-  if (too_many && !too_many_said_)
-    out_.tell(News(lines::kTooManyBodies, topic_, bodies.size(), persons_));
-  too_many_said_ = too_many;
+  if (bodies.size() > persons_) {
+    const bool is_new = !too_many_ns_ || now.monotonic_ns - *too_many_ns_ >= kNewAgainNs;
+    if (is_new) out_.tell(News(lines::kTooManyBodies, topic_, bodies.size(), persons_));
+    too_many_ns_ = now.monotonic_ns;
+  }
   bodies_ = std::move(bodies);
   handed_on_ns_ = now.monotonic_ns;
   Sample<hri_msgs_msg_dds__IdsList_> list;

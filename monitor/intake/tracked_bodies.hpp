@@ -20,6 +20,8 @@ namespace clearance {
 class TrackedBodies final : public Decoder {
  public:
   static constexpr std::int64_t kSilentNs = 1'000'000'000;
+  // Is the time without too many bodies after which they are told of again.
+  static constexpr std::int64_t kNewAgainNs = 10 * kSilentNs;
 
   // Without `use`, no topic is wanted.
   TrackedBodies(const Cell& cell, MoveItMessages::Use use, Outlet& out)
@@ -63,7 +65,8 @@ class TrackedBodies final : public Decoder {
   std::vector<std::string> bodies_;            // of the last message that was handed on
   std::int64_t handed_on_ns_ = 0;              // its time of arrival; 0: there was none
   std::optional<std::int64_t> begun_ns_;       // the first settle()
-  bool is_silent_ = false, too_many_said_ = false;
+  std::optional<std::int64_t> too_many_ns_;    // the last list with more bodies than persons
+  bool is_silent_ = false;
 };
 
 }  // namespace clearance

@@ -56,6 +56,8 @@ inline constexpr LogLine<Text> kQuestionsLeftOut{"questions-left-out", kWarn,
 inline constexpr LogLine<Text> kMoveItLeftOut{"moveit-left-out", kWarn, "MoveIt's {}"};
 inline constexpr LogLine<Text, Text, Text> kMoveItRefused{
     "moveit-refused", kWarn, "a message of MoveIt on {} changes nothing: {}{}"};
+inline constexpr LogLine<Text> kMoveItLinesLeftOut{"moveit-lines-left-out", kWarn,
+                                                   "{} about messages of MoveIt left out"};
 inline constexpr LogLine<Text, Count, Count> kTooManyBodies{
     "too-many-bodies", kError,
     "{} has {} bodies and the cell {} persons: the last person is unknown and stands for the rest"};
@@ -375,6 +377,9 @@ inline constexpr LogLine<Text, std::int64_t> kPartnerClock{
     "partner-clock", kWarn,
     "the clock of partner '{}' differs from this machine's by about {} ms: keep both in step (PTP, "
     "NTP)"};
+inline constexpr LogLine<Text, Text, Count> kPartnerNoticeRefused{
+    "partner-notice-refused", kWarn,
+    "{} of partner '{}' with a time that no leader can have: not used ({} so far)"};
 inline constexpr LogLine<Text, Text, Text> kPartnerOtherBuild{
     "partner-other-build", kError,
     "partner '{}' is another build, {}, than this one, {}: neither can take over the other's "

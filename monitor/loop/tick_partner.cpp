@@ -3,7 +3,6 @@
 #include "monitor/loop/tick_partner.hpp"
 
 #include <algorithm>
-#include <cstdlib>
 #include <tuple>
 
 namespace clearance {
@@ -81,6 +80,7 @@ void TickPartner::become(std::uint64_t lineage) noexcept {
 
 void TickPartner::listen() noexcept {
   for (; const TickNotice* notice = heard_.front(); heard_.pop()) {
+    if (!is_possible(*notice)) continue;
     newest_cycle_ = notice->cycle;
     newest_daemon_ = notice->daemon;
     newest_revision_ = notice->revision;
@@ -89,11 +89,30 @@ void TickPartner::listen() noexcept {
     for (const TickFrame& frame : notice->shown()) {
       if (frame.sensor < named_.size()) named_[frame.sensor] = frame.content;
     }
-    newest_start_ns_ = notice->start_ns;
     newest_due_ns_ = notice->due_ns;
     heard_ns_ = clock_.monotonic_ns();
     known_[notice->cycle % kKnown] = *notice;
   }
+}
+
+// Notices may be forged. The ticks of both partners are due within two periods, and told times go
+// on without a jump. After a join, the first notice tells theirs.
+bool TickPartner::is_possible(const TickNotice& notice) noexcept {
+  const std::int64_t slack = 2 * options_.period_ns;
+  bool is = less(notice.due_ns, clock_.monotonic_ns()) <= slack;
+  if (standing_ == PartnerStanding::kFollowing && notice.cycle >= cycle_) {
+    const std::int64_t step = has_joined_ ? 0 : less(ahead_of_own(notice), ahead_of_own_ns_);
+    is = is && less(deadline_, notice.due_ns) <= slack && step >= -kLargestStepNs &&
+         step <= kLargestStepNs;
+  }
+  if (!is) ++refused_notices_;
+  return is;
+}
+
+std::int64_t TickPartner::ahead_of_own(const TickNotice& notice) noexcept {
+  const std::int64_t late = less(clock_.monotonic_ns(), notice.due_ns);
+  const std::int64_t own = less(steady_.read(clock_).now_ns, late);
+  return less(less(notice.time.now_ns, notice.told_late_ns), own);
 }
 
 const TickNotice* TickPartner::known(std::uint64_t cycle) const noexcept {
@@ -120,6 +139,7 @@ std::int64_t TickPartner::decide(std::int64_t deadline, std::uint64_t cycle,
   using enum PartnerStanding;
   cycle_ = cycle;
   revision_ = revision;
+  deadline_ = deadline;
   store_.take_in();
   listen();
   const std::int64_t late_ns = clock_.monotonic_ns() - deadline;
@@ -281,8 +301,7 @@ std::int64_t TickPartner::follow(std::int64_t deadline) noexcept {
   for (;;) {
     const TickNotice* const notice = known(cycle_);
     if (notice != nullptr) {
-      const std::int64_t latest = std::max(deadline, clock_.monotonic_ns()) + options_.period_ns;
-      if (!continues_here(*notice) || notice->due_ns > latest) return part(deadline);
+      if (!continues_here(*notice)) return part(deadline);
       if (has_frames(*notice) && store_.choose(notice->used())) return follow(*notice);
     }
     const std::int64_t now = clock_.monotonic_ns();
@@ -301,16 +320,9 @@ std::int64_t TickPartner::follow(const TickNotice& notice) noexcept {
   before_ = 0;
   term_ = notice.term;
   for (const TickFrame& frame : notice.shown()) options_.frames->choose(frame.sensor);
-  const TickTime own = steady_.read(clock_);
-  const std::int64_t early = notice.due_ns - clock_.monotonic_ns();
-  // Told times go on without a jump. A notice that seems to make one was heard late.
-  const std::int64_t ahead = notice.time.now_ns - notice.told_late_ns - (own.now_ns + early);
-  const bool jumps = std::abs(ahead - ahead_of_own_ns_) > kLargestStepNs;
-  if (!jumps || has_joined_) {
-    ahead_of_own_ns_ = ahead;
-    offset_ns_ = notice.time.clock_offset_ns;
-    own_offset_ns_ = own.clock_offset_ns;
-  }
+  ahead_of_own_ns_ = ahead_of_own(notice);
+  offset_ns_ = notice.time.clock_offset_ns;
+  own_offset_ns_ = steady_.read(clock_).clock_offset_ns;
   has_joined_ = false;
   time_ = notice.time;
   clock_.sleep_until(notice.due_ns);
@@ -337,7 +349,7 @@ std::int64_t TickPartner::tick_apart(std::int64_t deadline) noexcept {
   if (is_gone) return take_the_lead(deadline, false);
   if (heard_ns_ != 0) {
     const std::int64_t period = options_.period_ns;
-    const std::int64_t apart = (deadline - newest_due_ns_) % period;
+    const std::int64_t apart = less(deadline, newest_due_ns_) % period;
     deadline -= apart > period / 2 ? apart - period : apart < -period / 2 ? apart + period : apart;
   }
   store_.choose_all(true);

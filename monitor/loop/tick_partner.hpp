@@ -71,6 +71,8 @@ class TickPartner final : public PoseSource, public TickPace {
   [[nodiscard]] bool wants_state() const noexcept { return wants_state_.load(); }
   // The lineage that a successor takes over, from Successor::begin() to its end; otherwise 0.
   [[nodiscard]] std::uint64_t becoming() const noexcept { return shown_becoming_.load(); }
+  // The notices that no leader can have written.
+  [[nodiscard]] std::uint64_t refused_notices() const noexcept { return refused_notices_.load(); }
   // When this daemon took the lead the last time, CLOCK_MONOTONIC.
   [[nodiscard]] std::int64_t leads_since_ns() const noexcept { return leads_since_ns_.load(); }
 
@@ -96,6 +98,10 @@ class TickPartner final : public PoseSource, public TickPace {
   static constexpr std::size_t kKnown = 256;  // notices: those of a quarter of a second
 
   void listen() noexcept;
+  // False: it is counted as refused.
+  [[nodiscard]] bool is_possible(const TickNotice& notice) noexcept;
+  // The lead of the leader's time over this daemon's own, at that tick.
+  [[nodiscard]] std::int64_t ahead_of_own(const TickNotice& notice) noexcept;
   [[nodiscard]] std::int64_t lost_after() const noexcept;
   void hear_out(std::int64_t late_ns) noexcept;
   void yield() noexcept;
@@ -130,6 +136,7 @@ class TickPartner final : public PoseSource, public TickPace {
   PartnerStanding standing_ = PartnerStanding::kStarting;
   bool is_silent_ = true;
   std::uint64_t cycle_ = 0, revision_ = 0;  // of the tick that is decided on
+  std::int64_t deadline_ = 0;               // its own, whatever the leader's is
   std::uint64_t term_ = 0;
   std::uint64_t lineage_, before_ = 0, since_cycle_ = 0, becoming_ = 0;
   std::uint64_t seed_;
@@ -148,14 +155,14 @@ class TickPartner final : public PoseSource, public TickPace {
   std::vector<TickNotice> known_;  // by cycle
   std::uint64_t newest_cycle_ = 0, newest_daemon_ = 0, newest_revision_ = 0, newest_term_ = 0;
   std::uint64_t newest_becoming_ = 0;
-  std::int64_t newest_start_ns_ = 0, newest_due_ns_ = 0, heard_ns_ = 0;  // the latter 0: never
+  std::int64_t newest_due_ns_ = 0, heard_ns_ = 0;  // the latter 0: never
 
   SpscRing<TickNotice> heard_, notices_;
   SpscRing<TickTag> tags_;
   Semaphore noticed_;
   std::atomic<PartnerStanding> shown_standing_{PartnerStanding::kStarting};
   std::atomic<bool> wants_state_{false}, partner_present_{false};
-  std::atomic<std::uint64_t> shown_becoming_{0};
+  std::atomic<std::uint64_t> shown_becoming_{0}, refused_notices_{0};
   std::atomic<std::int64_t> leads_since_ns_{0};
   std::atomic<std::uint64_t> passes_{0};
 };

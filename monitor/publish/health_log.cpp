@@ -138,7 +138,8 @@ void HealthLog::update(const clearance_msg_Health& health,
         logged++ < kLinesAtOnce)
       log_late(input, before);
     if (stale && is_known) before.stamp_ns = stamp_ns;
-    if (before.other_source != input.other_source && logged++ < kLinesAtOnce) {
+    if (*input.other_source != '\0' && before.other_source != input.other_source &&
+        logged++ < kLinesAtOnce) {
       log_line(lines::kTwoSources, input.name, input.source, input.other_source);
     }
     before.other_source = input.other_source;

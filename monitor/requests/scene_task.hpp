@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <functional>
 #include <optional>
 #include <string>
@@ -29,6 +30,10 @@ struct GivenCommand {
   // The daemon's own: `client` is not checked, and files may lie anywhere.
   bool is_own = false;
   AnswerCommand answer = {};
+  std::uint64_t identity = 0;  // of the message: a hash of all of it; 0: it is none
+  // Asked when its turn comes: the partner that led before has done this command, and the change is
+  // in force here. It is then answered, and not done again. May be empty.
+  std::function<bool()> is_done = {};
 };
 
 // A command of the daemon's own that depends on the cell in force when its turn comes.

@@ -129,7 +129,13 @@ std::optional<CommandResult> SceneThread::execute(const Command& command, bool i
 }
 
 std::optional<CommandResult> SceneThread::result_of(const GivenCommand& given) {
-  return execute(given.command, given.is_own, {});
+  const Command& command = given.command;
+  if (given.is_done && given.is_done())
+    return execute({.client = command.client, .request = command.request}, given.is_own, {});
+  in_hand_ = given.identity;
+  std::optional<CommandResult> result = execute(command, given.is_own, {});
+  in_hand_ = 0;
+  return result;
 }
 
 // A message of another program may have any size.

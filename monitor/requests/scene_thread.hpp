@@ -31,6 +31,9 @@ class SceneThread {
   // or after end(). Otherwise the answer comes, unless the program ends.
   [[nodiscard]] bool put(SceneTask task) { return queue_.put(std::move(task)); }
 
+  // For this thread: the identity of the given command that it does; 0: it does none.
+  [[nodiscard]] std::uint64_t in_hand() const noexcept { return in_hand_; }
+
   // Once `loop_ended` is set: drops what waits, and waits for the change that is in progress.
   // Returns false if a cell is still being read, which may take long. The thread then goes on, and
   // the program must end without destroying this or anything that the thread uses.
@@ -68,6 +71,7 @@ class SceneThread {
   SceneCommander commander_;
   std::map<std::string, Lane> lanes_;  // by sender
   bool has_to_wait_ = false;           // the task in hand
+  std::uint64_t in_hand_ = 0;
   std::shared_ptr<std::atomic<int>> readings_ = std::make_shared<std::atomic<int>>(0);
   std::mutex mutex_;
   Phase phase_ = Phase::kChanging;  // kReading: the thread may take long, and changes nothing

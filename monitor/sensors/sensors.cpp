@@ -1,6 +1,8 @@
 #include "monitor/sensors/sensors.hpp"
 
 #include <algorithm>
+#include <set>
+#include <string>
 #include <utility>
 
 #include "monitor/inputs/elapsed.hpp"
@@ -110,6 +112,7 @@ void Sensors::add_transforms(const RawSensorMessage& message) {
   Sample<tf2_msgs_msg_dds__TFMessage_> transforms;
   if (!decoder_.decode(message.cdr, transforms, message.bytes)) return;
   const bool is_static = message.type == Type::kStaticTransforms;
+  const std::set<std::string> twice = TfFrames::placed_twice(*transforms, is_static);
   for (std::uint32_t i = 0; i < transforms->transforms._length; ++i) {
     const auto& each = transforms->transforms._buffer[i];
     const std::int64_t stamp =
@@ -120,7 +123,8 @@ void Sensors::add_transforms(const RawSensorMessage& message) {
     TfTree::Link link{.parent = frame_name(each.header.frame_id),
                       .parent_from_child = pose_of(each.transform),
                       .stamp_ns = is_static ? std::nullopt : std::optional(stamp)};
-    if (!TfFrames::is_transform(child, link) || frames_.is_one_too_many(child)) continue;
+    const bool is_usable = TfFrames::is_transform(child, link) && !twice.contains(child);
+    if (!is_usable || frames_.is_one_too_many(child)) continue;
     frames_.set(child, {.writer = message.writer, .is_static = is_static}, std::move(link),
                 now_.monotonic_ns);
   }

@@ -191,7 +191,7 @@ InputAge Monitor::input_age(std::uint32_t object) const noexcept {
           .follows_joints = state.follows_joints,
           .absent = state.absent,
           .source = state.input.owner.source(),
-          .other_source = state.input.owner.other_source(),
+          .other_source = state.input.owner.other_source(state_->inputs.time.now_ns),
           .takeovers = state.input.owner.takeovers(),
           .former_source = state.input.owner.former_source()};
 }
@@ -203,7 +203,7 @@ InputAge Monitor::joint_age(std::uint32_t variable) const noexcept {
           .stale = !state.input.has_value || state.input.late,
           .contradicted = state.input.contradicted,
           .source = state.input.owner.source(),
-          .other_source = state.input.owner.other_source(),
+          .other_source = state.input.owner.other_source(state_->inputs.time.now_ns),
           .takeovers = state.input.owner.takeovers(),
           .former_source = state.input.owner.former_source(),
           .velocities_contradict = state.velocities_contradict};

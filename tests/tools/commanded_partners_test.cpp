@@ -20,6 +20,7 @@
 #include "monitor/client/commands.hpp"
 #include "monitor/client/questions.hpp"
 #include "tests/shared/scratch_folder.hpp"
+#include "tests/tools/commanding_client.hpp"
 #include "tests/tools/running_partners.hpp"
 
 namespace clearance {
@@ -160,6 +161,25 @@ TEST_F(CommandedPartners, AChangeThatAClientWasToldIsDoneOutlivesTheLeader) {
   })) << logs();
   send("operator", 1, done);
   EXPECT_TRUE(read_until([&] { return reports->scene_revision == done.back(); })) << logs();
+}
+
+// As if its first answer had been lost. Done a second time, it would be refused: there is a crate.
+TEST_F(CommandedPartners, ACommandThatIsSentAgainToTheOtherOneIsAnsweredAndNotDoneAgain) {
+  start_both();
+  test::CommandingClient client(connection.participant(), "planner");
+  client.meet();
+  const Command command = client.command(
+      {AddObject{"{name: crate, groups: [still], fixed: true, sphere: {radius: 0.1}}"}});
+  const CommandResult done = client.result_of(command);
+  ASSERT_TRUE(done.done()) << done.reason;
+  daemons["left"]->signal(SIGKILL);
+  daemons["left"]->wait();
+  client.forget();
+  const CommandResult again = client.result_of(command);
+  EXPECT_TRUE(again.done()) << again.reason << logs();
+  EXPECT_EQ(again.scene_revision, done.scene_revision);
+  const CommandResult next = client.result_of(margin(3));
+  EXPECT_TRUE(next.done()) << next.reason;
 }
 
 std::string cell_with_post() {

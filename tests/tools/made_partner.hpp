@@ -36,8 +36,8 @@ class MadePartner {
     dds_write(reports_, &message);
   }
   // Leads a tick, by a clock that is behind by this time. A daemon that leads as well goes on
-  // leading unless it is outranked.
-  void lead(std::int64_t behind_ns = 0, bool outranks = true) {
+  // leading unless it is outranked. The tick is due in this time.
+  void lead(std::int64_t behind_ns = 0, bool outranks = true, std::int64_t due_in_ns = 0) {
     clearance_msg_PartnerTick tick{};
     copy(name_, tick.partner);
     tick.daemon = kDaemonId;
@@ -47,6 +47,7 @@ class MadePartner {
     tick.lineage = 1;
     tick.cycle = ++cycle_;
     tick.now_ns = tick.due_ns = dds_time() - behind_ns;
+    tick.due_ns += due_in_ns;
     dds_write_ts(ticks_, &tick, dds_time() - behind_ns);
   }
   // Sends a state, which no daemon can take over.

@@ -51,6 +51,13 @@ TEST_F(PartnerFaults, ClocksInStepAreNotNamed) {
   EXPECT_FALSE(daemon.told("partner-clock")) << daemon.output();
 }
 
+TEST_F(PartnerFaults, ANoticeOfATickThatIsDueHoursLaterIsNamedAndLeadsNobody) {
+  EXPECT_TRUE(tells("partner-notice-refused", {"no leader can have"}, [&] {
+    partner.lead(0, true, std::int64_t{1} << 43);
+  })) << daemon.output();
+  EXPECT_FALSE(daemon.told("partner-stands", {"apart"})) << daemon.output();
+}
+
 TEST_F(PartnerFaults, AnotherBuildIsNamed) {
   EXPECT_TRUE(tells("partner-other-build", {"right", "0.0 of another day"}, [&] {
     partner.send({.build = "0.0 of another day"});

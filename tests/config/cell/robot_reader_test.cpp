@@ -1,5 +1,6 @@
 #include "config/cell/robot_reader.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
@@ -176,6 +177,24 @@ TEST_F(Robots, PairsThatTheSrdfDisablesMayTouch) {
   EXPECT_TRUE(watched(cell, "arm", "foot"));
   EXPECT_THAT(cell.robots.front().notes,
               testing::Contains(HasSubstr("1 disabled pair left out: 1 of two fixed links")));
+}
+
+// Each topic of joint states is a source, and so is tf for their bases.
+TEST_F(Robots, ThatCanNeedMoreSourcesThanAreHeardSaySo) {
+  const auto is_said = [this](int robots, const std::string& more) {
+    std::string list;
+    for (int i = 0; i < robots; ++i)
+      list += fmt::format(
+          "  - {{name: r{0}, prefix: r{0}_, urdf: walker_description/walker.urdf, "
+          "joint_states: /r{0}/joint_states{1}}}\n",
+          i, more);
+    const Scene cell = scene(list, "pairs: [{between: [r0, r1]}]\n");
+    return testing::Value(cell.robots.front().notes,
+                          testing::Contains(HasSubstr("can need 17 sources, but 16 are heard")));
+  };
+  EXPECT_FALSE(is_said(16, ""));
+  EXPECT_TRUE(is_said(17, ""));
+  EXPECT_TRUE(is_said(16, ", base: {frame: cart}"));
 }
 
 TEST_F(Robots, WithoutAnSrdfNeighboursMayTouchAndAreNamed) {

@@ -2,6 +2,7 @@
 // files.
 #include "monitor/app/intervention_log.hpp"
 
+#include <fmt/format.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
@@ -135,6 +136,38 @@ TEST_F(Interventions, AreIncompleteIfTheDiskStaysFull) {
   EXPECT_FALSE(log.complete());
   EXPECT_FALSE(log.hangs());
   EXPECT_EQ(test::read_text(file), "");
+}
+
+TEST_F(Interventions, OfALargeFileGoOnInANewOneWhoseFirstLineHoldsTheHashOfTheLast) {
+  {
+    InterventionLog log(file, 600);
+    for (int i = 0; i < 8; ++i) log.note("note", {{"i", i}});
+    log.finish();
+    EXPECT_TRUE(log.complete());
+  }
+  std::vector<std::filesystem::path> files;
+  while (std::filesystem::exists(folder / fmt::format("log-{}", files.size() + 2)))
+    files.push_back(folder / fmt::format("log-{}", files.size() + 2));
+  EXPECT_GE(files.size(), 2u);
+  files.push_back(file);
+  std::string before;  // the hash of the last line of the file before
+  int notes = 0;
+  for (const std::filesystem::path& each : files) {
+    SCOPED_TRACE(each);
+    std::size_t lines = 0;
+    const ChainedLog log = read_chained_log(each, [&](const ChainedLine& line) {
+      const auto read = nlohmann::json::parse(fmt::format("{{{}}}", line.fields));
+      if (++lines > 1 || before.empty()) {
+        EXPECT_EQ(read.value("i", -1), notes++);
+        return;
+      }
+      EXPECT_EQ(line.kind, "continues");
+      EXPECT_EQ(read.value("last", ""), before);
+    });
+    EXPECT_EQ(log.fault + log.torn + log.error, "");
+    before = log.end.hash;
+  }
+  EXPECT_EQ(notes, 8);
 }
 
 TEST_F(Interventions, GetNoLineInAFileThatAnotherProgramHasChangedOrMoved) {

@@ -34,6 +34,28 @@ TEST(Ownership, FirstSourceOfAnObjectKeepsItWhileAnotherSendsTheSame) {
   EXPECT_EQ(monitor.input_age(0).other_source, 5u);
 }
 
+// A source that comes back later is news again.
+TEST(Ownership, ASourceThatIsNotUsedIsToldUntilItWasSilentForTenSeconds) {
+  const Scene scene = test::two_balls();
+  Monitor monitor(scene);
+  std::int64_t now = kStart;
+  const std::array both{from(3, 0.0, now), from(5, 0.0, now)};
+  monitor.tick(both, now);
+  const auto other_after = [&](std::int64_t ns) {
+    for (const std::int64_t end = kStart + ns; now < end;) {
+      now += 100 * kTick;
+      const PoseSample sample = from(3, 0.0, now);
+      monitor.tick(std::span(&sample, 1), now);
+    }
+    return monitor.input_age(0).other_source;
+  };
+  EXPECT_EQ(other_after(kOtherGoneNs), 5u);
+  EXPECT_EQ(other_after(kOtherGoneNs + 100 * kTick), kNoSource);
+  const PoseSample again = from(5, 0.0, now);
+  monitor.tick(std::span(&again, 1), now + kTick);
+  EXPECT_EQ(monitor.input_age(0).other_source, 5u);
+}
+
 // Whoever came first: which of the two is right cannot be told.
 TEST(Ownership, ObjectOfTwoSourcesThatContradictIsUnknownUntilASecondAfter) {
   const Scene scene = test::two_balls();

@@ -164,7 +164,7 @@ TEST_F(Variable, BelongsToTheFirstThatSendsItUntilThatIsSilent) {
   other.source = 3;
   EXPECT_EQ(take(at(1 * kVariableMs, 0.0)), std::nullopt);
   EXPECT_EQ(take(other), Reject::kOtherSource);
-  EXPECT_EQ(state_.input.owner.other_source(), 3u);
+  EXPECT_EQ(state_.input.owner.other_source(2 * kVariableMs), 3u);
   other.stamp_ns = 1002 * kVariableMs;
   EXPECT_EQ(take(other), std::nullopt);
   EXPECT_EQ(state_.input.owner.source(), 3u);

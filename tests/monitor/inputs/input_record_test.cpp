@@ -88,7 +88,7 @@ TEST(InputRecord, IsTakenOrRefusedByTheFirstCauseThatHolds) {
     EXPECT_EQ(sample.is_used, !is.cause);
     EXPECT_EQ(input.has_value, of.has_value || !is.cause);
     EXPECT_EQ(input.stamp_ns, is.cause ? kNow - 50 * kMs : of.stamp_ns());
-    EXPECT_EQ(input.owner.other_source(), of.is_rival ? kSecond : kNoSource);
+    EXPECT_EQ(input.owner.other_source(kNow), of.is_rival ? kSecond : kNoSource);
     EXPECT_EQ(input.contradiction.holds(kNow), is.unknown_ns >= 0);
     input.contradiction.agree();
     EXPECT_EQ(input.contradiction.holds(kNow + is.unknown_ns), is.unknown_ns >= 0);

@@ -5,7 +5,9 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cstring>
+#include <functional>
 #include <future>
 #include <mutex>
 #include <optional>
@@ -16,6 +18,7 @@
 #include "monitor/requests/scene_thread.hpp"
 #include "tests/monitor/intake/moveit_messages.hpp"
 #include "tests/monitor/requests/commanded_cell.hpp"
+#include "tests/shared/logged.hpp"
 
 namespace clearance {
 namespace {
@@ -87,6 +90,22 @@ TEST_F(MoveItPortTest, WhatTheCapacityDoesNotAllowIsRefusedAndTheNextMessageCoun
   EXPECT_TRUE(take(sphere("c", "world")).done());
 }
 
+// Two programs send scenes that this cell refuses, as fast as they can.
+TEST_F(MoveItPortTest, RefusedMessagesAtAnyRateGiveFiveLinesASecond) {
+  const auto logged = std::make_shared<test::Logged>();
+  const test::LoggedTo to(logged);
+  for (const char* name : {"a", "b"}) EXPECT_TRUE(take(sphere(name, "world")).done());
+  const auto began = std::chrono::steady_clock::now();
+  for (int i = 0; i < 100; ++i) {
+    for (const char* name : {"c", "d"}) EXPECT_FALSE(take(sphere(name, "world")).done());
+  }
+  const auto seconds =
+      std::chrono::duration_cast<std::chrono::seconds>(std::chrono::steady_clock::now() - began);
+  EXPECT_GE(logged->count("[moveit-refused]"), 5u);
+  EXPECT_LE(logged->count("[moveit-refused]"),
+            5u * (static_cast<std::size_t>(seconds.count()) + 2));
+}
+
 // Beside a partner, which the test plays.
 class SharedMoveItPort : public MoveItPortTest {
  protected:
@@ -102,9 +121,12 @@ class SharedMoveItPort : public MoveItPortTest {
   }
   // The partner leads, and has done this message, after which that revision is in force.
   void hear(const moveit::RawScene& message, std::uint64_t revision) {
+    hear(message.identity(), revision);
+  }
+  void hear(std::uint64_t message, std::uint64_t revision) {
     Sample<clearance_msg_PartnerScene> sample;
     reserve_sequence(sample->changes, 1);
-    sample->changes._buffer[0] = {message.identity(), revision};
+    sample->changes._buffer[0] = {message, revision};
     sample->changes._length = 1;
     std::vector<std::byte> bytes;
     moveit::SceneKeeper().save(bytes);
@@ -114,14 +136,25 @@ class SharedMoveItPort : public MoveItPortTest {
     port_.hear(*sample);
     port_.update_lead();
   }
+  void in_scene_thread(const std::function<void()>& work) {
+    std::promise<void> done;
+    ASSERT_TRUE(thread_->put(OtherWork{[&] {
+      work();
+      done.set_value();
+    }}));
+    done.get_future().get();
+  }
   // Until the scene thread has done what waits.
   void finish() {
     for (int i = 0; i < 3; ++i) {
       port_.update_lead();
-      std::promise<void> done;
-      ASSERT_TRUE(thread_->put(OtherWork{[&] { done.set_value(); }}));
-      done.get_future().get();
+      in_scene_thread([] {});
     }
+  }
+  bool is_done(std::uint64_t command) {
+    bool done = false;
+    in_scene_thread([&] { done = port_.is_done(command); });
+    return done;
   }
   bool is_told(const moveit::RawScene& message) {
     const std::lock_guard lock(mutex_);
@@ -167,6 +200,28 @@ TEST_F(SharedMoveItPort, WhatTheOtherLeaderHadNotPutInForceIsDone) {
   leads = true;
   finish();
   EXPECT_NE(object("a"), nullptr);
+}
+
+TEST_F(SharedMoveItPort, ACommandThatTheOtherLeaderHasPutInForceIsDone) {
+  hear(7, revision());
+  leads = true;
+  EXPECT_TRUE(is_done(7));
+  EXPECT_FALSE(is_done(8));
+}
+
+TEST_F(SharedMoveItPort, ACommandWhoseChangeIsLostWithTheOtherLeaderIsNotDone) {
+  hear(7, revision() + 1);
+  leads = true;
+  EXPECT_FALSE(is_done(7));
+}
+
+TEST_F(SharedMoveItPort, ACommandThatWasRefusedAfterItWasToldOfIsNotDone) {
+  leads = true;
+  finish();
+  in_scene_thread([this] { port_.coming(revision() + 1, 7); });
+  EXPECT_TRUE(is_done(7));
+  in_scene_thread([this] { port_.ended(7, {.status = CommandStatus::kTooSlow}); });
+  EXPECT_FALSE(is_done(7));
 }
 
 TEST_F(SharedMoveItPort, AMessageThatWasQueuedIsNotDoneOnceTheOtherOneLeads) {

@@ -183,14 +183,49 @@ TEST_F(RosTransformsTest, OfARivalLeadThroughItsOwnParents) {
 TEST_F(RosTransformsTest, ThatAreNoPosesAreRefused) {
   constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
   send({{"map", "cart_link", {8, 0, 0}}});
-  send({{"map", "cart_link", {kNaN, 0, 0}},
-        {"map", "cart_link", {7, 0, 0}, {0, 0, 0, 0}},
-        {"map", "cart_link", {7, 0, 0}, {0, 0, 0, 1.01}},
-        {"cart_link", "cart_link", {7, 0, 0}},
-        {"", "cart_link", {7, 0, 0}},
-        {"map", "", {7, 0, 0}}});
+  const std::vector<FrameText> no_poses{{"map", "cart_link", {kNaN, 0, 0}},
+                                        {"map", "cart_link", {7, 0, 0}, {0, 0, 0, 0}},
+                                        {"map", "cart_link", {7, 0, 0}, {0, 0, 0, 1.01}},
+                                        {"cart_link", "cart_link", {7, 0, 0}},
+                                        {"", "cart_link", {7, 0, 0}},
+                                        {"map", "", {7, 0, 0}}};
+  for (const FrameText& frame : no_poses) send({frame});
   EXPECT_EQ(place_of(0), Vec3(8, 0, 0));
   EXPECT_EQ(heard.told(lines::kFrameRefused.code), 2u) << "once for each frame";
+}
+
+// Neither could be meant, as of two positions of one joint in one message.
+class FramesPlacedTwice : public RosTransformsTest,
+                          public testing::WithParamInterface<const char*> {};
+
+TEST_P(FramesPlacedTwice, InOneMessageAreRefusedAndThoseBesideThemUsed) {
+  send({{"map", "tool0", {4, 0, 0}}}, GetParam());
+  send({{"map", "tool0", {5, 0, 0}}, {"map", "cart_link", {8, 0, 0}}, {"map", "tool0", {6, 0, 0}}},
+       GetParam());
+  const std::vector<PoseBatch> batches = settled();
+  ASSERT_EQ(batches.size(), 1u);
+  ASSERT_EQ(batches[0].samples.size(), 2u);
+  EXPECT_EQ(batches[0].samples[0].world_from_object.position, Vec3(8, 0, 0));
+  EXPECT_EQ(batches[0].samples[1].world_from_object.position, Vec3(4, 0, 0));
+  EXPECT_EQ(heard.told(lines::kFrameRefused.code), 1u);
+  heard.pass(20 * kTransformMs);
+  send({{"map", "tool0", {5, 0, 0}}, {"map", "tool0", {5, 0, 0}}}, GetParam());
+  EXPECT_EQ(place_of(1), Vec3(5, 0, 0)) << "they say the same";
+}
+INSTANTIATE_TEST_SUITE_P(OfTf, FramesPlacedTwice, testing::Values("/tf", kStatic));
+
+// A publisher may send what it has collected: transforms of several times.
+TEST_F(RosTransformsTest, OfSeveralTimesInOneMessageCountInTheirOrder) {
+  RosCdr cdr;
+  cdr.number(std::uint32_t{2});
+  for (const int ms : {0, 5}) {
+    cdr.header(now() + ms * kTransformMs, "map").text("cart_link");
+    for (const double number : {8.0 + ms, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0}) cdr.number(number);
+  }
+  heard.pass(5 * kTransformMs);
+  EXPECT_TRUE(heard.take({"/tf", "tf2_msgs/msg/TFMessage", now(), cdr.bytes()}, 1));
+  EXPECT_EQ(place_of(0), Vec3(13, 0, 0));
+  EXPECT_EQ(heard.told(lines::kFrameRefused.code), 0u);
 }
 
 TEST_F(RosTransformsTest, ThatGoRoundInACircleSayNothingUntilTheyDoNot) {

@@ -149,6 +149,23 @@ TEST_F(TrackedBodiesOfIntake, AreToldWhenThereAreMoreThanTheCellHasPersons) {
   EXPECT_EQ(heard_.told(lines::kTooManyBodies.code), 1u);
 }
 
+TEST_F(TrackedBodiesOfIntake, AreToldOnceWhileListsWithTooManyAlternateWithOthers) {
+  const auto alternate = [this] {
+    for (int ms = 0; ms < 3000; ++ms) {
+      EXPECT_TRUE(ms % 2 == 0 ? send({"b1"}) : send({"b1", "b2", "b3"}));
+      heard_.pass(1'000'000);
+    }
+  };
+  alternate();
+  EXPECT_EQ(heard_.told(lines::kTooManyBodies.code), 1u);
+  for (int s = 0; s < 10; ++s) {
+    EXPECT_TRUE(send({"b1"}));
+    heard_.pass(1'000'000'000);
+  }
+  alternate();
+  EXPECT_EQ(heard_.told(lines::kTooManyBodies.code), 2u) << "there were not too many for 10 s";
+}
+
 // A tracker that was never heard is silent, too: nothing says then that no person is there.
 TEST_F(TrackedBodiesOfIntake, AreUnknownAfterASecondWithoutAList) {
   heard_.settle();

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "tests/monitor/loop/side.hpp"
@@ -231,7 +232,6 @@ TEST_F(TickPartners, ALeaderThatWasStoppedFollowsTheOneThatWentOn) {
   }
 }
 
-// This daemon ticked the cycle that the other one had announced otherwise.
 // A daemon was stopped, and the notice of its next tick was heard when it went on.
 TEST_F(TickPartners, ANoticeThatWasHeardLateDoesNotSetTheToldTimeBack) {
   constexpr std::int64_t kStopped = 1'500'000'000;
@@ -333,20 +333,45 @@ TEST_F(TickPartners, AStateWithoutALineageLetsNoDaemonFollow) {
   EXPECT_EQ(right.ticks.standing(), kApart);
 }
 
-// A bit of its notice has flipped.
+// A bit of the leader's notice has flipped, or a stranger has written it.
+TEST_F(TickPartners, ANoticeWithATimeThatNoLeaderCanHaveCountsAsNotHeard) {
+  const auto due = [](std::int64_t by) { return std::pair(by, std::int64_t{0}); };
+  const auto told = [](std::int64_t by) { return std::pair(std::int64_t{0}, by); };
+  constexpr std::int64_t kHours = std::int64_t{1} << 43, kMost = std::int64_t{1} << 62;
+  join();
+  std::uint64_t refused = 0;
+  for (const bool is_first : {true, false}) {
+    for (const auto& [due_by, told_by] :
+         {due(kHours), due(-kHours), due(4 * kTick), due(-4 * kTick), due(-kMost), told(kHours),
+          told(-kHours), told(200 * kTick), told(-200 * kTick), told(-kMost)}) {
+      SCOPED_TRACE(testing::Message() << due_by << ' ' << told_by);
+      send();
+      left.tick();
+      TickNotice forged = *left.ticks.notices().front();
+      forged.due_ns += due_by;
+      forged.time.now_ns += told_by;
+      if (is_first) ASSERT_TRUE(right.ticks.hear(forged));
+      left.tell(right);
+      if (!is_first) ASSERT_TRUE(right.ticks.hear(forged));
+      right.tick();
+      EXPECT_EQ(right.ticks.standing(), kFollowing);
+      EXPECT_EQ(right.ticks.refused_notices(), ++refused);
+      expect_agreement();
+    }
+  }
+}
+
 TEST_F(TickPartners, AFollowerDoesNotWaitForATickThatIsDueHoursLater) {
   join();
   send();
   left.tick();
-  for (; const TickNotice* told = left.ticks.notices().front(); left.ticks.notices().pop()) {
-    TickNotice late = *told;
-    late.due_ns += std::int64_t{1} << 43;
-    ASSERT_TRUE(right.ticks.hear(late));
-  }
+  TickNotice late = *left.ticks.notices().front();
+  late.due_ns += std::int64_t{1} << 43;
+  ASSERT_TRUE(right.ticks.hear(late));
   const std::int64_t before = right.clock.monotonic_ns();
   right.tick();
   EXPECT_LT(right.clock.monotonic_ns() - before, 3 * kTick);
-  EXPECT_EQ(right.ticks.standing(), kApart);
+  EXPECT_EQ(right.ticks.standing(), kLeading);
 }
 
 TEST_F(TickPartners, TheOlderOfTwoThatWereAloneLeads) {

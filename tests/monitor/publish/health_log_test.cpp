@@ -101,6 +101,23 @@ TEST_F(HealthLogTest, TellsAgainOfAnObjectThatWasAwayForAChange) {
   EXPECT_EQ(lines("poses-late"), 2u) << logged_->text();
 }
 
+// Health names the other source for ten seconds after its last sample.
+TEST_F(HealthLogTest, TellsOfAnotherSourceWhenItComesAndNotWhenItHasGone) {
+  std::string name = "cup";
+  const auto other = [&](const std::string& source) {
+    std::vector<clearance_msg_InputAge> inputs(1);
+    inputs[0].name = name.data();
+    source.copy(inputs[0].other_source, sizeof inputs[0].other_source - 1);
+    update(inputs);
+    return lines("two-sources");
+  };
+  EXPECT_EQ(other(""), 0u);
+  EXPECT_EQ(other("b"), 1u);
+  EXPECT_EQ(other("b"), 1u);
+  EXPECT_EQ(other(""), 1u) << logged_->text();
+  EXPECT_EQ(other("b"), 2u) << "it is back";
+}
+
 // A late frame is let go after a while, and a changed cell may have a longer age limit.
 TEST_F(HealthLogTest, TellsThatFramesAreBackWhenOneHasComeAndOnlyThen) {
   Scene scene = scene_of_names({"eye"});

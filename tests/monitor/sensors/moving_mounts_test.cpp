@@ -95,6 +95,20 @@ TEST_F(MovingMounts, GiveAFrameItsPlaceWhenATransformFromAfterItsStampHasCome) {
   EXPECT_LT(frames[0].pose_error, 0.17);
 }
 
+TEST_F(MovingMounts, HaveNoPlaceByAMessageThatPlacesTheirFrameTwice) {
+  make_mast();
+  for (const std::int64_t ms : {-100, -50, 0}) add_mast(0.0, kStart + ms * kMountMs);
+  add_image(kStart + 40 * kMountMs);
+  const std::int64_t stamp_ns = kStart + 50 * kMountMs;
+  const auto twice = test::transforms(stamp_ns, stamp_ns,
+                                      {{"map", "mast", {0.1, 0, 0}}, {"map", "mast", {0.2, 0, 0}}});
+  add(Type::kTransforms, twice.cdr, stamp_ns);
+  EXPECT_TRUE(settle(kStart + 66 * kMountMs).empty());
+  EXPECT_TRUE(sensors->any_waiting());
+  add_mast(0.2, stamp_ns);
+  EXPECT_EQ(settle(kStart + 67 * kMountMs).size(), 1u);
+}
+
 // The transform from the robot to `camera_link` is missing: it may be anywhere.
 TEST_F(MovingMounts, HaveNoPlaceIfTheirPathEndsAtNoFrameOfTheCellAlsoInALog) {
   for (const char* root : {"camera_link", "world"}) {

@@ -86,6 +86,31 @@ TEST_F(SavedState, GivesTheSameBitsInEveryLaterTick) {
   }
 }
 
+TEST_F(SavedState, TellsOfAnotherSourceForAsLongAsTheMonitorThatItIsOf) {
+  Monitor monitor(scene);
+  const auto hear = [](Monitor& by, std::uint32_t source, std::int64_t now) {
+    PoseSample cart = test::sample(1, test::at(1.0, 0.3, 0), now);
+    cart.source = source;
+    by.tick(std::span(&cart, 1), now);
+    return by.input_age(1).other_source;
+  };
+  hear(monitor, 2, now());
+  EXPECT_EQ(hear(monitor, 3, now() + kTick), 3u);
+  std::vector<std::byte> bytes;
+  save_state(numbers, SceneIds(scene), monitor, bytes);
+  JoinedState joined(scene);
+  ASSERT_TRUE(joined.restore(bytes, 1));
+  TickState restored(scene);
+  restored.join(joined);
+  int told = 0;
+  for (std::int64_t s = 0; s < 20'000'000'000; s += 500'000'000) {
+    const std::uint32_t other = hear(monitor, 2, now() + 2 * kTick + s);
+    EXPECT_EQ(hear(restored.monitor(), 2, now() + 2 * kTick + s), other) << s;
+    told += other == 3 ? 1 : 0;
+  }
+  EXPECT_EQ(told, 20) << "for ten seconds";
+}
+
 TEST_F(SavedState, OfAnotherSceneOrCutOffIsRefused) {
   const Monitor monitor(scene);
   std::vector<std::byte> bytes;

@@ -1,0 +1,43 @@
+// Limits the lines about one kind of refusal: requests and messages that are refused may come at
+// any rate, and must not fill the log.
+#pragma once
+
+#include <cstdint>
+#include <mutex>
+#include <utility>
+
+#include "config/text/sentences.hpp"
+#include "monitor/app/log_line.hpp"
+
+namespace clearance {
+
+// Any thread but that of the tick.
+class LineLimit {
+ public:
+  static constexpr std::uint64_t kLinesASecond = 5;
+
+  // `left_out` is the line that counts those that were left out.
+  explicit LineLimit(const LogLine<lines::Text>& left_out) : line_(left_out) {}
+
+  // Returns whether one more line may be logged, by CLOCK_MONOTONIC. The first one of a second
+  // comes after the count of an earlier second.
+  [[nodiscard]] bool admits(std::int64_t now_ns) {
+    const std::lock_guard lock(mutex_);
+    const std::int64_t second = now_ns / 1'000'000'000;
+    if (std::exchange(second_, second) != second) {
+      if (left_out_ > 0) log_line(line_, counted(left_out_, "line"));
+      logged_ = left_out_ = 0;
+    }
+    if (++logged_ <= kLinesASecond) return true;
+    ++left_out_;
+    return false;
+  }
+
+ private:
+  const LogLine<lines::Text>& line_;
+  std::mutex mutex_;
+  std::int64_t second_ = -1;
+  std::uint64_t logged_ = 0, left_out_ = 0;  // in that second
+};
+
+}  // namespace clearance
