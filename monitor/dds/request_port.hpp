@@ -96,6 +96,7 @@ class RequestPort {
   std::uint64_t logged_ = 0, left_out_ = 0;  // refusals in that second
   LapsedWriters lapsed_;
   dds_entity_t reader_, results_;
+  std::uint64_t address_;  // of the results
   DataWait wait_;
   std::vector<CdrSample> taken_;
   std::vector<std::uint64_t> ended_;
