@@ -22,6 +22,7 @@
 #include <vector>
 
 #include "config/cell/topics.hpp"
+#include "monitor/client/checked_reader.hpp"
 #include "monitor/client/complete_reports.hpp"
 #include "monitor/client/partner_merge.hpp"
 #include "monitor/client/report_judge.hpp"
@@ -176,11 +177,12 @@ class Catalogue {
                                       std::optional<std::uint64_t> revision = {}) const;
   [[nodiscard]] std::string joint_name(std::uint32_t joint,
                                        std::optional<std::uint64_t> revision = {}) const;
+  [[nodiscard]] const RefusedMessages& refused() const noexcept { return reader_.refused(); }
 
  private:
   [[nodiscard]] const clearance_msg_Catalogue* known(std::optional<std::uint64_t> revision) const;
 
-  dds_entity_t reader_;
+  CheckedReader reader_;
   Sample<clearance_msg_Catalogue> scratch_;
   std::list<Sample<clearance_msg_Catalogue>> kept_;  // the latest one first
 };
@@ -236,9 +238,10 @@ class Health {
   [[nodiscard]] const clearance_msg_Health* message() const noexcept {
     return known_ ? &*message_ : nullptr;
   }
+  [[nodiscard]] const RefusedMessages& refused() const noexcept { return reader_.refused(); }
 
  private:
-  dds_entity_t reader_;
+  CheckedReader reader_;
   Sample<clearance_msg_Health> message_, scratch_;
   std::int64_t leader_ns_ = 0;  // when the last one of a leader came
   bool known_ = false;
@@ -266,6 +269,7 @@ class Zones {
   [[nodiscard]] const std::map<std::uint32_t, clearance_msg_ZoneState>& states() const noexcept {
     return states_;
   }
+  [[nodiscard]] const RefusedMessages& refused() const noexcept { return reader_.refused(); }
 
  private:
   struct Written {
@@ -276,7 +280,7 @@ class Zones {
   [[nodiscard]] static const clearance_msg_ZoneState& latest(
       const std::map<std::uint64_t, Written>& of_daemons);
 
-  dds_entity_t reader_;
+  CheckedReader reader_;
   std::map<std::uint32_t, clearance_msg_ZoneState> states_;
   std::map<std::uint32_t, std::map<std::uint64_t, Written>> written_;  // by zone and daemon
   std::vector<std::uint32_t> raised_;  // those that only the last report says are active

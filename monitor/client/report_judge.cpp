@@ -18,10 +18,8 @@ const char* name(ReportError error) noexcept {
 template <class Message>
 ReportError ReportJudge::refuse(const Message& message, std::int64_t at_ns) noexcept {
   using enum ReportError;
-  const ReportError error = !has_its_crc(message)         ? kCorrupt
-                            : message.address != address_ ? kOtherAddress
-                            : checker_.has_had(message)   ? kRepeated
-                                                          : kGood;
+  ReportError error = delivery_error(message, address_);
+  if (error == kGood && checker_.has_had(message)) error = kRepeated;
   if (error != kGood) note(error, true, at_ns);
   return error;
 }

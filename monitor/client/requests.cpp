@@ -63,29 +63,29 @@ class Requests<Request, Result, Message>::Stop {
 template <class Request, class Result, class Message>
 Requests<Request, Result, Message>::Requests(Connection& connection, std::string_view client,
                                              TopicKind requests, TopicKind results)
-    : client_(client) {
+    : client_(client),
+      reader_(connection.participant(), results, connection.topics().*topic(results).name) {
   if (client.empty() || client.size() > 32) {
     throw std::invalid_argument(fmt::format(
         "the client '{}' has {} bytes; expected a name of 1 to 32", client, client.size()));
   }
   Participant& participant = connection.participant();
   const Topics& topics = connection.topics();
-  reader_ = participant.reader(results, topics.*topic(results).name);
   writer_ =
       participant.writer(requests, topics.*topic(requests).name, {.process_lease_ns = kLeaseNs});
-  wait_ = std::make_unique<DataWait>(participant, std::vector{reader_});
+  wait_ = std::make_unique<DataWait>(participant, std::vector{reader_.entity()});
 }
 
 template <class Request, class Result, class Message>
 Requests<Request, Result, Message>::~Requests() {
   wait_.reset();
   dds_delete(writer_);
-  dds_delete(reader_);
+  dds_delete(reader_.entity());
 }
 
 template <class Request, class Result, class Message>
 bool Requests<Request, Result, Message>::is_heard() const {
-  const Met now = met(writer_, reader_);
+  const Met now = met(writer_, reader_.entity());
   return now.readers > 0 && now.writers > 0;
 }
 
@@ -119,14 +119,14 @@ std::optional<Result> Requests<Request, Result, Message>::send(const Make& make,
   const Request request = next(make);
   const std::int64_t alone_ns = monotonic_ns() + kLeaseNs + kAgainNs / 2;
   do {
-    const Met before = met(writer_, reader_);
+    const Met before = met(writer_, reader_.entity());
     (void)write(request);
     const std::int64_t again_ns = std::min(end_ns, monotonic_ns() + kAgainNs);
     std::optional<Result> result;
     do {
       result = wait_for(request_, std::min(again_ns, monotonic_ns() + kMeetNs), stop);
     } while (!result && monotonic_ns() < again_ns && !stop() &&
-             !met(writer_, reader_).more(before));
+             !met(writer_, reader_.entity()).more(before));
     if (result) {
       // In these cases the daemon has not taken the request.
       using Status = decltype(Result::status);
@@ -153,10 +153,8 @@ std::optional<Result> Requests<Request, Result, Message>::result(std::uint64_t r
 
 template <class Request, class Result, class Message>
 void Requests<Request, Result, Message>::take_results() {
-  void* pointer = &*message_;
-  dds_sample_info_t info;
-  while (dds_take(reader_, &pointer, &info, 1, 1) > 0) {
-    if (!info.valid_data || client_ != message_->client) continue;
+  while (reader_.take(*message_)) {
+    if (client_ != message_->client) continue;
     Result result = from_wire(*message_);
     results_[result.request] = std::move(result);
     if (results_.size() > kKeptResults) results_.erase(results_.begin());

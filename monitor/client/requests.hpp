@@ -35,6 +35,8 @@ class Requests {
   // True when a daemon takes such requests on this topic. Whether it takes them from this client,
   // the first result says.
   [[nodiscard]] bool is_heard() const;
+  // Results that are not as the daemon wrote them: the request is sent again.
+  [[nodiscard]] const RefusedMessages& refused() const noexcept { return reader_.refused(); }
 
  protected:
   // Throws std::invalid_argument when the name has no bytes or more than 32.
@@ -60,7 +62,8 @@ class Requests {
 
   std::string client_;
   std::uint64_t request_ = 0;  // the last one
-  dds_entity_t writer_, reader_;
+  dds_entity_t writer_;
+  CheckedReader reader_;
   std::unique_ptr<DataWait> wait_;
   Sample<Message> message_;
   std::map<std::uint64_t, Result> results_;  // by request

@@ -61,11 +61,10 @@ struct SharedCell::ShareStreams {
         separations(connection),
         catalogue(connection),
         health(connection),
-        zones(connection.participant().reader_of_several(TopicKind::kZones,
-                                                         connection.topics().zones)) {
+        zones(connection.participant(), TopicKind::kZones, connection.topics().zones, true) {
     if (has_gradients) gradients.emplace(connection);
   }
-  ~ShareStreams() { dds_delete(zones); }
+  ~ShareStreams() { dds_delete(zones.entity()); }
 
   [[nodiscard]] bool is_held() const noexcept {
     return reports.is_held() || separations.is_held() || (gradients && gradients->is_held());
@@ -101,10 +100,8 @@ struct SharedCell::ShareStreams {
     if (gradients) gradient.take_all(*gradients);
     look_for_names();
     clearance_msg_ZoneState state{};
-    void* pointer = &state;
     dds_sample_info_t info;
-    while (dds_take(zones, &pointer, &info, 1, 1) > 0) {
-      if (!info.valid_data) continue;
+    while (zones.take(state, info)) {
       note(state, now_ns);
       writer_of[state.daemon] = info.publication_handle;
     }
@@ -141,7 +138,7 @@ struct SharedCell::ShareStreams {
   // latter case DDS sends its states again.
   void forget_gone(std::uint64_t but) {
     if (states.empty()) return;
-    const auto writers = writers_of(zones);
+    const auto writers = writers_of(zones.entity());
     std::erase_if(states, [&](const auto& one) {
       const std::uint64_t daemon = one.first.second;
       const bool is_kept = daemon == but || daemon == current.latest->daemon ||
@@ -228,7 +225,7 @@ struct SharedCell::ShareStreams {
   std::deque<Division> divisions;  // by the catalogues of this share, the latest one first
   client::Health health;
   HealthCounts counted;
-  dds_entity_t zones;
+  CheckedReader zones;
   OfTwoScenes<clearance_msg_Distances> current;
   OfTwoScenes<clearance_msg_Separation> separation;
   OfTwoScenes<clearance_msg_Gradients> gradient;

@@ -29,28 +29,12 @@ bool take_one(dds_entity_t reader, T& sample) {
   return false;
 }
 
-// Leaves `latest` unchanged when no sample waits.
-template <class T>
-bool take_newer(dds_entity_t reader, Sample<T>& latest, Sample<T>& scratch) {
-  if (!take_one(reader, *scratch)) return false;
-  std::swap(*latest, *scratch);
-  return true;
-}
-
 template <class Message>
 TopicKind kind_of() {
   for (const Topic& topic : kTopics) {
     if (topic.type == &topic_descriptor<Message>()) return topic.kind;
   }
   return TopicKind::kDistances;
-}
-
-dds_entity_t make_reader(Connection& connection, TopicKind kind, std::int32_t depth = 0) {
-  return connection.participant().reader(kind, connection.topics().*topic(kind).name, depth);
-}
-
-dds_entity_t make_reader_of_all(Connection& connection, TopicKind kind) {
-  return connection.participant().reader_of_several(kind, connection.topics().*topic(kind).name);
 }
 
 template <class Sequence>
@@ -98,7 +82,8 @@ const std::string& Connection::where() const noexcept { return participant_->whe
 
 template <class Message>
 Stream<Message>::Stream(Connection& connection, const StreamOptions& options)
-    : reader_(make_reader(connection, kind_of<Message>(), options.depth)),
+    : reader_(connection.participant().reader(
+          kind_of<Message>(), connection.topics().*topic(kind_of<Message>()).name, options.depth)),
       wait_(std::make_unique<DataWait>(connection.participant(), std::vector{reader_})),
       judge_(
           {options.old_after.count(), options.period.count(), options.error_interval.count()},
@@ -187,11 +172,12 @@ const clearance_msg_PairDistance* find(const clearance_msg_Distances& report,
 }
 
 Catalogue::Catalogue(Connection& connection)
-    : reader_(make_reader_of_all(connection, TopicKind::kCatalogue)) {}
+    : reader_(connection.participant(), TopicKind::kCatalogue, connection.topics().catalogue,
+              true) {}
 
 // A catalogue that comes again, from a daemon that was started again, replaces the one before.
 void Catalogue::update(const std::function<void(const clearance_msg_Catalogue&)>& each) {
-  while (take_one(reader_, *scratch_)) {
+  while (reader_.take(*scratch_)) {
     if (each) each(*scratch_);
     std::erase_if(kept_, [this](const Sample<clearance_msg_Catalogue>& known) {
       return known->scene_revision == scratch_->scene_revision;
@@ -275,30 +261,30 @@ const clearance_msg_PairGradient* Pair::in(const clearance_msg_Gradients& gradie
   return nullptr;
 }
 
-Health::Health(Connection& connection) : reader_(make_reader(connection, TopicKind::kHealth)) {}
+Health::Health(Connection& connection)
+    : reader_(connection.participant(), TopicKind::kHealth, connection.topics().health) {}
 
-// A message that is not of the leader counts when none of a leader has come for two seconds.
+// A message that is not of the leader counts when none of a leader has come for two periods.
 void Health::update() {
-  constexpr std::int64_t kSilentNs = 2'500'000'000;
-  while (take_one(reader_, *scratch_)) {
+  while (reader_.take(*scratch_)) {
+    const std::int64_t silent_ns = scratch_->period_ns / 2 * 5;
     const bool leads = *scratch_->partner.partner == '\0' || scratch_->partner.leads;
     if (leads) leader_ns_ = monotonic_ns();
-    const bool has_leader = leader_ns_ != 0 && monotonic_ns() - leader_ns_ < kSilentNs;
+    const bool has_leader = leader_ns_ != 0 && monotonic_ns() - leader_ns_ < silent_ns;
     if (!leads && has_leader && scratch_->daemon != message_->daemon) continue;
     std::swap(message_, scratch_);
     known_ = true;
   }
 }
 
-Zones::Zones(Connection& connection) : reader_(make_reader_of_all(connection, TopicKind::kZones)) {}
+Zones::Zones(Connection& connection)
+    : reader_(connection.participant(), TopicKind::kZones, connection.topics().zones, true) {}
 
 void Zones::update() {
   clearance_msg_ZoneState state{};
-  void* pointer = &state;
   dds_sample_info_t info;
   std::set<std::uint32_t> changed;
-  while (dds_take(reader_, &pointer, &info, 1, 1) > 0) {
-    if (!info.valid_data) continue;
+  while (reader_.take(state, info)) {
     written_[state.zone][state.daemon] = {state, info.publication_handle};
     changed.insert(state.zone);
   }
@@ -346,7 +332,7 @@ void Zones::update(const clearance_msg_Distances& report) {
 // A daemon that has gone, or ticks apart, may have left its state of an earlier tick. A state that
 // no other daemon has written again still counts.
 void Zones::forget_gone() {
-  const std::vector<std::uint64_t> there = writers_of(reader_);
+  const std::vector<std::uint64_t> there = writers_of(reader_.entity());
   const auto is_there = [&](const auto& of_daemon) {
     return std::ranges::count(there, of_daemon.second.writer) > 0;
   };

@@ -77,12 +77,11 @@ ShareScenes::ShareScenes(const Cell& cell, Participant& participant, Actions act
   std::vector<dds_entity_t> readers;
   for (std::size_t share = 0; share < names_.size(); ++share) {
     if ((share == 0) == (own_ == 0)) continue;
-    Heard& heard = heard_.emplace_back();
-    heard.share = share;
-    heard.reader = participant.reader_of_several(
-        TopicKind::kCatalogue,
-        topic_of_other_share(cell.topics.catalogue, names_[own_], names_[share]));
-    readers.push_back(heard.reader);
+    const std::string topic =
+        topic_of_other_share(cell.topics.catalogue, names_[own_], names_[share]);
+    Heard& heard = heard_.emplace_back(
+        Heard{share, client::CheckedReader(participant, TopicKind::kCatalogue, topic, true)});
+    readers.push_back(heard.reader.entity());
   }
   wait_ = std::make_unique<DataWait>(participant, readers);
 }
@@ -90,7 +89,7 @@ ShareScenes::ShareScenes(const Cell& cell, Participant& participant, Actions act
 ShareScenes::~ShareScenes() {
   stop();
   wait_.reset();
-  for (const Heard& heard : heard_) dds_delete(heard.reader);
+  for (const Heard& heard : heard_) dds_delete(heard.reader.entity());
 }
 
 void ShareScenes::start() {
@@ -119,10 +118,7 @@ void ShareScenes::run() {
 
 void ShareScenes::hear() {
   for (Heard& heard : heard_) {
-    void* pointer = &*taken_;
-    dds_sample_info_t info;
-    while (dds_take(heard.reader, &pointer, &info, 1, 1) > 0) {
-      if (!info.valid_data) continue;
+    while (heard.reader.take(*taken_)) {
       std::swap(*heard.last, *taken_);
       to_follow_.hear(heard.share, {.daemon = heard.last->daemon,
                                     .revision = heard.last->scene_revision,

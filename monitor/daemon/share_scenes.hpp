@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "config/cell/cell.hpp"
+#include "monitor/client/checked_reader.hpp"
 #include "monitor/participant/participant.hpp"
 #include "monitor/requests/scene_task.hpp"
 #include "monitor/wire/dds_sample.hpp"
@@ -93,8 +94,8 @@ class ShareScenes {
  private:
   // The catalogues of one share; the last of them.
   struct Heard {
-    std::size_t share = 0;
-    dds_entity_t reader = 0;
+    std::size_t share;
+    client::CheckedReader reader;
     Sample<clearance_msg_Catalogue> last = {};
   };
   struct Wanted {

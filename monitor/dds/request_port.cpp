@@ -11,6 +11,7 @@
 #include "monitor/app/log_line.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/realtime.hpp"
+#include "monitor/wire/report_checksum.hpp"
 
 namespace clearance {
 namespace {
@@ -85,6 +86,7 @@ RequestPort<Traffic>::RequestPort(const Cell& cell, const std::vector<std::strin
       refusal_lines_(left_out_line(Traffic{})),
       reader_(make_reader<Traffic>(cell, participant, names_, lapsed_)),
       results_(participant.writer(Traffic::kResults, cell.topics.*topic(Traffic::kResults).name)),
+      address_(participant.address(cell.topics.*topic(Traffic::kResults).name)),
       wait_(participant, {reader_}) {}
 
 template <class Traffic>
@@ -198,7 +200,8 @@ void RequestPort<Traffic>::answer_at_once(Result result) {
 
 template <class Traffic>
 void RequestPort<Traffic>::write(const Result& result) {
-  const auto message = to_wire(result, daemon_);
+  auto message = to_wire(result, daemon_);
+  seal(*message, address_);
   const std::lock_guard lock(mutex_);
   dds_write(results_, &*message);
 }

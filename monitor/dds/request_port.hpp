@@ -96,6 +96,7 @@ class RequestPort {
   LineLimit refusal_lines_;
   LapsedWriters lapsed_;
   dds_entity_t reader_, results_;
+  std::uint64_t address_;  // of the results
   DataWait wait_;
   std::vector<CdrSample> taken_;
   std::vector<std::uint64_t> ended_;

@@ -45,6 +45,8 @@ struct RunStatistics {
 
 // These figures are since the scene was last changed.
 struct LoopStatistics : RunStatistics {
+  static constexpr std::int64_t kPeriodNs = 1'000'000'000;  // of their messages
+
   LoopStatistics() = default;
   // Has its final size: filling or copying it allocates nothing.
   explicit LoopStatistics(const Scene& scene)

@@ -249,6 +249,7 @@ Sample<clearance_msg_Health> make_health(const Scene& scene, const LoopStatistic
                                          const RecordingHealth& recording,
                                          const ResponseTimes* responses) {
   Sample<clearance_msg_Health> sample;
+  sample->period_ns = LoopStatistics::kPeriodNs;
   sample->scene_revision = scene.revision;
   sample->dropped_reports = dropped_reports;
   sample->recording = dds_string_dup(recording.state().c_str());

@@ -65,6 +65,7 @@ ReportWriter::CellMessages::CellMessages(const Cell& the_cell, const SceneInForc
           std::llround(std::ceil(cell.full_every_s * cell.scene.rate_hz)))),
       period_ns(std::llround(1e9 / cell.scene.rate_hz)) {
   distances->daemon = separation->daemon = daemon;
+  distances->period_ns = separation->period_ns = period_ns;
 }
 
 // The catalogue is latched, so later clients get it as well.
@@ -88,8 +89,8 @@ ReportWriter::ReportWriter(const Cell& cell, Participant& participant, ReportQue
       others_(participant, topics_.distances, identity_),
       now_(std::make_unique<CellMessages>(cell, SceneInForce(), queue, identity_.id)),
       zones_(make_writer(participant, topics_, TopicKind::kZones), cell.scene, identity_.id,
-             [this](dds_entity_t writer, const clearance_msg_ZoneState& state) {
-               return write(TopicKind::kZones, writer, &state, "zone state");
+             [this](dds_entity_t writer, clearance_msg_ZoneState& state) {
+               return send(TopicKind::kZones, writer, state, "zone state");
              }),
       contact_log_(cell.scene),
       health_log_(cell.scene),
@@ -153,6 +154,7 @@ std::uint32_t ReportWriter::distance_readers() const {
 Sample<clearance_msg_Catalogue> ReportWriter::own_catalogue() const {
   auto catalogue = make_catalogue(now_->cell, now_->since, CataloguePairs::kOfWholeCell);
   catalogue->daemon = identity_.id;
+  seal(*catalogue, participant_.address(topics_.catalogue));
   return catalogue;
 }
 
@@ -247,6 +249,7 @@ void ReportWriter::write_report(const QueuedReport& queued) {
   if (leads_ && now_->cell.scene.gradients) {
     clearance_msg_Gradients& gradients = now_->gradients.of(queued.report, dds_time());
     gradients.daemon = identity_.id;
+    gradients.period_ns = now_->period_ns;
     now_->pairs.in(gradients);
     send(TopicKind::kGradients, gradients_, gradients, "gradients");
   }
@@ -324,7 +327,7 @@ void ReportWriter::write_health(const LoopStatistics& statistics) {
   sample->other_writers = others_.writers();
   sample->foreign_reports = others_.reports();
   if (partner_ != nullptr) partner_->fill(sample->partner);
-  write(TopicKind::kHealth, health_, &*sample, "health");
+  send(TopicKind::kHealth, health_, *sample, "health");
   if (on_health_) {
     on_health_({.scene = now_->cell.scene,
                 .health = *sample,
@@ -340,7 +343,6 @@ void ReportWriter::write_health(const LoopStatistics& statistics) {
 
 template <class Message>
 bool ReportWriter::send(TopicKind kind, dds_entity_t writer, Message& message, const char* what) {
-  message.period_ns = now_->period_ns;
   seal(message, participant_.address(topics_.*topic(kind).name));
   return write(kind, writer, &message, what);
 }

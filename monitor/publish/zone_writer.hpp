@@ -22,8 +22,8 @@ class ZoneWriter {
   // whereas one that is active in vain is written again when this daemon follows. Ids of a scene
   // that the partner does not have could mean others of its zones: then nothing is written.
   enum class Which : std::uint8_t { kNothing, kActive, kAll };
-  // Returns false if DDS has not taken the state.
-  using Write = std::function<bool(dds_entity_t writer, const clearance_msg_ZoneState&)>;
+  // Seals the state. Returns false if DDS has not taken it.
+  using Write = std::function<bool(dds_entity_t writer, clearance_msg_ZoneState&)>;
 
   // `scene` must outlive this, or its use until the next change().
   ZoneWriter(dds_entity_t writer, const Scene& scene, std::uint64_t daemon, Write write);

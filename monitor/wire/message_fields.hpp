@@ -52,6 +52,8 @@ struct ZoneStateFields {
     visit(Field{"cycle", Meaning::kCycle}, zone.cycle...);
     visit(Field{"now_ns"}, zone.now_ns...);
     PublishedZoneFields::for_each(visit, zone...);
+    visit(Field{"delivery_checksum", Meaning::kDelivery}, zone.delivery_checksum...);
+    visit(Field{"address", Meaning::kDelivery}, zone.address...);
   }
 };
 

@@ -10,7 +10,8 @@
 
 #include "monitor/inputs/checksum.hpp"
 #include "monitor/wire/crc64.hpp"
-#include "monitor/wire/message_fields.hpp"
+#include "monitor/wire/report_check.hpp"
+#include "monitor/wire/slow_message_fields.hpp"
 
 namespace clearance {
 
@@ -36,12 +37,18 @@ class AddToSum {
            std::is_enum_v<Value>) void add(const Value& value) const noexcept {
     sum_.add(value);
   }
-  // A text counts up to its end, with that.
+  // A text counts up to its end, with that. A null pointer stands for an empty one, as on the wire.
   template <std::size_t N>
   void add(const char (&text)[N]) const noexcept {
     for (std::size_t i = 0; i < N; ++i) {
       sum_.add(text[i]);
       if (text[i] == 0) return;
+    }
+  }
+  void add(char* const& text) const noexcept {
+    for (const char* at = text == nullptr ? "" : text;; ++at) {
+      sum_.add(*at);
+      if (*at == 0) return;
     }
   }
   void add(const Vec3& v) const noexcept { sum_.add3(v); }
@@ -132,7 +139,7 @@ template <class Message>
 // the checksum that partners compare.
 template <class Message>
 void seal(Message& message, std::uint64_t address) noexcept {
-  if constexpr (requires { message.partner; }) {
+  if constexpr (requires { message.lineage; }) {
     if (*message.partner != '\0') message.checksum = checksum_of(message);
   }
   message.address = address;
@@ -143,6 +150,13 @@ void seal(Message& message, std::uint64_t address) noexcept {
 template <class Message>
 [[nodiscard]] bool has_its_crc(const Message& message) noexcept {
   return crc_of(message) == message.delivery_checksum;
+}
+
+// Why the message is not what a daemon wrote for readers of this address; kGood: it is.
+template <class Message>
+[[nodiscard]] ReportError delivery_error(const Message& message, std::uint64_t address) noexcept {
+  using enum ReportError;
+  return !has_its_crc(message) ? kCorrupt : message.address != address ? kOtherAddress : kGood;
 }
 
 // The checksum of the rest of a report, and of the state of its tick. The counts of refused samples

@@ -2,6 +2,7 @@
 
 import pathlib
 import re
+import time
 
 import clearance
 
@@ -50,3 +51,16 @@ def test_records_have_the_fields_of_their_messages(run_daemon, planar_file):
             assert set(zone.dtype.names) == set(fields_of("ZoneState")) - {"name"}
         assert all(set(use) == set(fields_of("SourceUse")) for use in report.sources)
         assert report.active_zones.dtype == "uint32"
+
+
+def test_health_has_the_fields_of_the_message(run_daemon, planar_file):
+    daemon = run_daemon(planar_file)
+    with clearance.Reports(daemon.connection()) as reports:
+        end = time.monotonic() + LIMIT_S
+        while (health := reports.health) is None and time.monotonic() < end:
+            time.sleep(0.05)
+        assert health is not None and reports.refused == ""
+        assert set(health) == set(fields_of("Health"))
+        for name, rows in {"InputAge": health["inputs"], "JointAge": health["joints"]}.items():
+            assert rows and all(set(row) == set(fields_of(name)) for row in rows), name
+        assert set(health["partner"]) == set(fields_of("PartnerHealth"))

@@ -12,6 +12,7 @@
 #include <sstream>
 #include <thread>
 
+#include "tests/shared/sealed.hpp"
 #include "tests/tools/made_partner.hpp"
 #include "tests/tools/running_cell.hpp"
 #include "tests/tools/running_view.hpp"
@@ -156,11 +157,46 @@ TEST_F(ViewOfPartners, StillSaysThatFiguresOfDaemonsThatAreNoneAreMixed) {
     for (clearance_msg_Distances message{}; !ends; ++message.cycle) {
       message.now_ns = dds_time();
       message.scene_revision = cell.scene.revision;
-      dds_write(writer, &message);
+      write_sealed(other, writer, message);
       std::this_thread::sleep_for(std::chrono::milliseconds(5));
     }
   });
   EXPECT_THAT(shown(view, 120)["statuses"].dump(), HasSubstr("2 daemons publish here"));
+  ends = true;
+  writes.join();
+}
+
+// A corrupt report is the newest for three pictures of the page.
+TEST_F(ViewOfPartners, OfACorruptStreamSaysThatNoReportMayBeReliedOnUntilThePageIsClosed) {
+  View view(arguments);
+  Participant daemon(dds);
+  const dds_entity_t writer = daemon.writer(TopicKind::kDistances, cell.topics.distances);
+  const dds_entity_t zones = daemon.writer(TopicKind::kZones, cell.topics.zones);
+  clearance_msg_ZoneState unsealed{};
+  check_dds(dds_write(zones, &unsealed), "writing");
+  std::atomic<bool> ends{false}, is_corrupt{true};
+  std::thread writes([&] {
+    clearance_msg_Distances message{};
+    message.daemon = 7;
+    message.period_ns = 5'000'000;
+    message.scene_revision = cell.scene.revision;
+    while (!ends) {
+      ++message.cycle;
+      message.now_ns = message.publish_ns = dds_time();
+      write_sealed(daemon, writer, message);
+      std::this_thread::sleep_for(std::chrono::milliseconds(5));
+      if (message.cycle % 20 != 0 || !is_corrupt) continue;
+      message.lower_all = 1.0 - message.lower_all;
+      dds_write(writer, &message);
+      std::this_thread::sleep_for(std::chrono::milliseconds(50));
+    }
+  });
+  const std::string said = shown(view, 120)["statuses"].dump();
+  EXPECT_THAT(said, HasSubstr("no report may be relied on: corrupt, twice within an hour"));
+  EXPECT_THAT(said, HasSubstr("1 message of " + cell.topics.zones + " was refused"));
+  is_corrupt = false;
+  std::this_thread::sleep_for(std::chrono::seconds(3));
+  EXPECT_THAT(shown(view, 60)["statuses"].dump(), Not(HasSubstr("relied")));
   ends = true;
   writes.join();
 }

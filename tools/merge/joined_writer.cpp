@@ -62,10 +62,15 @@ bool JoinedWriter::put(TopicKind kind, dds_entity_t writer, const void* sample) 
 }
 
 template <class Message>
-void JoinedWriter::send(TopicKind kind, dds_entity_t writer, Message message) {
-  message.period_ns = period_ns_;
+bool JoinedWriter::send(TopicKind kind, dds_entity_t writer, Message message) {
   seal(message, participant_.address(topics_.*topic(kind).name));
-  put(kind, writer, &message);
+  return put(kind, writer, &message);
+}
+
+template <class Message>
+void JoinedWriter::send_tick(TopicKind kind, dds_entity_t writer, Message message) {
+  message.period_ns = period_ns_;
+  send(kind, writer, message);
 }
 
 // The strings belong to the share's sample. Cycles are those of this program.
@@ -74,7 +79,7 @@ bool JoinedWriter::write_catalogue(const clearance_msg_Catalogue& catalogue) {
   whole.daemon = identity_.id;
   whole.share[0] = '\0';
   whole.began_after = whole.in_force_from = 0;
-  return put(TopicKind::kCatalogue, catalogue_, &whole);
+  return send(TopicKind::kCatalogue, catalogue_, whole);
 }
 
 // Ids that a changed cell no longer has are withdrawn, and all others are written again. So is a
@@ -85,7 +90,7 @@ void JoinedWriter::write_zones(const client::SharedCell& whole, bool again) {
     const WrittenZone present = WrittenZone::of(state);
     const auto before = written_.find(id);
     const bool is_due = again || before == written_.end() || before->second != present;
-    if (!is_due || put(TopicKind::kZones, zones_, &state)) now[id] = present;
+    if (!is_due || send(TopicKind::kZones, zones_, state)) now[id] = present;
   }
   for (const auto& [id, state] : written_) {
     if (whole.zones().contains(id)) continue;
@@ -106,7 +111,7 @@ void JoinedWriter::write(client::SharedCell& whole) {
     revision_ = write_catalogue(*catalogue) ? catalogue->scene_revision : 0;
   }
   const std::int64_t oldest_ns = whole->publish_ns;
-  send(TopicKind::kDistances, distances_, *whole);
+  send_tick(TopicKind::kDistances, distances_, *whole);
   ++reports_;
   not_whole_ += whole.is_whole() ? 0 : 1;
   if (delays_us_.merging.size() < kDelays) {
@@ -120,7 +125,7 @@ void JoinedWriter::write(client::SharedCell& whole) {
   if (const clearance_msg_Separation* const separation = whole.separation()) {
     if (separation_ == 0)
       separation_ = participant_.writer(TopicKind::kSeparation, topics_.separation);
-    send(TopicKind::kSeparation, separation_, *separation);
+    send_tick(TopicKind::kSeparation, separation_, *separation);
   }
   if (const clearance_msg_Gradients* const gradients = whole.gradients()) {
     if (gradients_ == 0) {
@@ -128,7 +133,7 @@ void JoinedWriter::write(client::SharedCell& whole) {
           participant_.writer(TopicKind::kGradients, topics_.gradients,
                               {.lease_ns = lease_ns_, .user_data = to_user_data(identity_)});
     }
-    send(TopicKind::kGradients, gradients_, *gradients);
+    send_tick(TopicKind::kGradients, gradients_, *gradients);
   }
   write_zones(whole, is_new);
   if (!others_.yields()) messages_.report_ended();
@@ -139,7 +144,8 @@ void JoinedWriter::write(client::SharedCell& whole) {
   health->dropped_reports += failed_;
   health->other_writers = others_.writers();
   health->foreign_reports = others_.reports();
-  put(TopicKind::kHealth, health_, &*health);
+  health->period_ns = kHealthEvery;
+  send(TopicKind::kHealth, health_, *health);
   on_health_(std::move(health));
 }
 

@@ -40,10 +40,11 @@ class JoinedWriter {
  private:
   [[nodiscard]] bool write_catalogue(const clearance_msg_Catalogue& catalogue);
   void write_zones(const client::SharedCell& whole, bool again);
-  // Seals a message of the tick, and writes it.
+  // Seals a message, and writes it. False: DDS has not taken it.
   template <class Message>
-  void send(TopicKind kind, dds_entity_t writer, Message message);
-  // False: DDS has not taken it.
+  bool send(TopicKind kind, dds_entity_t writer, Message message);
+  template <class Message>
+  void send_tick(TopicKind kind, dds_entity_t writer, Message message);
   bool put(TopicKind kind, dds_entity_t writer, const void* sample);
 
   Participant& participant_;

@@ -12,6 +12,7 @@
 
 #include "monitor/loop/ports.hpp"
 #include "monitor/participant/question_message.hpp"
+#include "monitor/wire/report_checksum.hpp"
 #include "tools/view/sensors_json.hpp"
 
 namespace clearance::view {
@@ -20,6 +21,9 @@ namespace {
 // Without a report for this long, the daemon or the machine hangs. clearance-watch uses the same
 // time.
 constexpr std::int64_t kSilentNs = 1'000'000'000;
+
+// Two faulty reports within this time are not forgotten while a page is open.
+constexpr std::int64_t kErrorsNs = 3'600'000'000'000;
 
 // Readers stay for this time after the last viewer has gone, because a page may be loaded again.
 constexpr std::int64_t kLingerNs = 2'000'000'000;
@@ -59,7 +63,9 @@ LiveSource::LiveSource(std::shared_ptr<const Cell> cell, const DdsOptions& dds)
                 frame_->take_from_ros(std::move(batch));
                 return true;
               }),
-      ros_(participant_, intake_) {
+      ros_(participant_, intake_),
+      judge_({.old_after_ns = kSilentNs, .period_ns = kSilentNs, .error_interval_ns = kErrorsNs},
+             participant_.address(topics_.distances)) {
   for (const Topic& topic : kRecordedTopics) {
     if (std::ranges::find(kOnDemand, topic.kind) == kOnDemand.end()) join(topic.kind);
   }
@@ -133,7 +139,8 @@ std::string LiveSource::distance(std::uint32_t a, std::uint32_t b) {
     if (!waits || now_ns - watched_ns_ > kFirstReportNs) break;
     std::this_thread::sleep_for(std::chrono::milliseconds(1));
   }
-  const bool is_known = heard_ && clock.realtime_ns() - frame_->report_time_ns() <= kSilentNs;
+  const bool is_known = heard_ && judge_.error(clock.monotonic_ns()) == ReportError::kGood &&
+                        clock.realtime_ns() - frame_->report_time_ns() <= kSilentNs;
   constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
   return frame_->distance_json(is_known ? a : kNone, is_known ? b : kNone);
 }
@@ -144,7 +151,7 @@ void LiveSource::join(TopicKind kind) {
   reader = participant_.reader(kind, topics_.*topic(kind).name, depth_of(kind));
 }
 
-// The next viewer must not be shown an old report.
+// The next viewer must not be shown an old report. Whoever closes the page has seen its faults.
 void LiveSource::leave(Server& server) {
   for (const TopicKind kind : kOnDemand) {
     dds_entity_t& reader = readers_[index(kind)];
@@ -158,10 +165,12 @@ void LiveSource::leave(Server& server) {
   heard_ = false;
   is_merging_ = has_looked_ = false;
   merged_ = {};
+  judge_.acknowledge();
+  refused_.clear();
   server.set_status("partners", 0, "");
 }
 
-// The bytes as they came: nothing is decoded that is only passed on.
+// The bytes as they came, if they are as the daemon wrote them.
 void LiveSource::take(TopicKind kind, std::int64_t steady_ns) {
   const dds_entity_t reader = readers_[index(kind)];
   if (reader == 0) return;
@@ -197,16 +206,44 @@ void LiveSource::merge(std::int64_t steady_ns) {
   merged_.note_loss(steady_ns);
 }
 
-// A report that cannot be decoded is not shown: it is corrupt.
 bool LiveSource::is_shown(TopicKind kind, const CdrSample& sample, std::int64_t steady_ns) {
-  if (!is_merging_) return true;
-  if (kind == TopicKind::kDistances)
-    return decoder_.decode(sample.bytes(), report_, CdrBytes::kOfReader) &&
-           merged_.take(*report_, steady_ns);
-  if (kind == TopicKind::kHealth)
-    return decoder_.decode(sample.bytes(), health_, CdrBytes::kOfReader) &&
-           merged_.take(*health_, steady_ns);
-  return true;
+  switch (kind) {
+    case TopicKind::kDistances:
+      return is_good(sample, steady_ns);
+    case TopicKind::kHealth:
+      return is_sound(kind, sample, health_) && (!is_merging_ || merged_.take(*health_, steady_ns));
+    case TopicKind::kZones:
+      return is_sound(kind, sample, zone_);
+    case TopicKind::kCatalogue:
+      return is_sound(kind, sample, catalogue_);
+    case TopicKind::kSeparation:
+      return is_sound(kind, sample, separation_);
+    case TopicKind::kGradients:
+      return is_sound(kind, sample, gradients_);
+    default:
+      return true;  // written by others than the daemon
+  }
+}
+
+bool LiveSource::is_good(const CdrSample& sample, std::int64_t steady_ns) {
+  if (!decoder_.decode(sample.bytes(), report_, CdrBytes::kOfReader)) return false;
+  const ReportError error = judge_.refuse(*report_, steady_ns);
+  bool is_next = error == ReportError::kGood;
+  if (is_merging_ && (is_next || error == ReportError::kCorrupt))
+    is_next = merged_.take(*report_, steady_ns, is_next);
+  if (is_next) static_cast<void>(judge_.check(*report_, SystemClock().realtime_ns(), steady_ns));
+  return is_next;
+}
+
+template <class Message>
+bool LiveSource::is_sound(TopicKind kind, const CdrSample& sample, Sample<Message>& message) {
+  const std::string& name = topics_.*topic(kind).name;
+  if (!decoder_.decode(sample.bytes(), message, CdrBytes::kOfReader)) return false;
+  const ReportError error = delivery_error(*message, participant_.address(name));
+  if (error == ReportError::kGood) return true;
+  client::RefusedMessages& refused = refused_[kind];
+  refused = {.count = refused.count + 1, .last = error, .topic = name};
+  return false;
 }
 
 // Takes messages of ROS 2 as the daemon does (dds/pose_reader.cpp). News is dropped here, because
@@ -304,15 +341,24 @@ void LiveSource::note_what_is_attached(Server& server) {
 void LiveSource::tell_of_the_daemon(Server& server, std::int64_t now_ns, std::int64_t steady_ns) {
   const dds_entity_t reader = readers_[index(TopicKind::kDistances)];
   const double silent_s = 1e-9 * static_cast<double>(now_ns - frame_->report_time_ns());
+  const ReportError error = judge_.error(steady_ns);
+  const bool is_fault = judge_.is_held() || error == ReportError::kCorrupt ||
+                        error == ReportError::kOtherAddress || error == ReportError::kRepeated;
   std::string text;
   if (!heard_) {
     text = fmt::format("waiting for clearanced on {}", participant_.where());
   } else if (writers_there(reader) == 0) {
     text = "clearanced has ended";
-  } else if (silent_s * 1e9 > kSilentNs || (writers_alive(reader) == 0 && silent_s > 0.2)) {
+  } else if (!is_fault &&
+             (silent_s * 1e9 > kSilentNs || (writers_alive(reader) == 0 && silent_s > 0.2))) {
     text = "clearanced is silent: it died or stands still";
   } else if (writers_alive(reader) > (merged_.are_partners(steady_ns) ? 2u : 1u)) {
     text = fmt::format("{} daemons publish here: figures are mixed", writers_alive(reader));
+  } else if (error != ReportError::kGood) {
+    text = fmt::format("no report may be relied on: {}{}", client::name(error),
+                       judge_.is_held() ? ", twice within an hour; close the page for 3 s when "
+                                          "you have looked at the cause"
+                                        : "");
   } else if (frame_->revision() != 0 && frame_->revision() != cell_->scene.revision) {
     text = reading_.valid() ? "the daemon has changed its cell, which is being read"
                             : "clearanced runs another cell than the one shown here";
@@ -321,6 +367,9 @@ void LiveSource::tell_of_the_daemon(Server& server, std::int64_t now_ns, std::in
   const MergedReports::Trouble trouble =
       text.empty() ? merged_.trouble(steady_ns) : MergedReports::Trouble();
   server.set_status("partners", trouble.level, trouble.text);
+  std::vector<client::RefusedMessages> refused;
+  for (const auto& [kind, messages] : refused_) refused.push_back(messages);
+  server.set_status("refused", 1, client::text_of(refused));
 }
 
 }  // namespace clearance::view

@@ -4,10 +4,13 @@
 #include <array>
 #include <cstdint>
 #include <future>
+#include <map>
 #include <memory>
 #include <vector>
 
 #include "config/cell/cell_file.hpp"
+#include "monitor/client/checked_reader.hpp"
+#include "monitor/client/report_judge.hpp"
 #include "monitor/dds/ros_readers.hpp"
 #include "monitor/participant/cdr_sample.hpp"
 #include "monitor/participant/participant.hpp"
@@ -49,6 +52,9 @@ class LiveSource final : public Source {
   [[nodiscard]] bool are_all_needed(dds_entity_t reader);
   void merge(std::int64_t steady_ns);
   [[nodiscard]] bool is_shown(TopicKind kind, const CdrSample& sample, std::int64_t steady_ns);
+  [[nodiscard]] bool is_good(const CdrSample& report, std::int64_t steady_ns);
+  template <class Message>
+  [[nodiscard]] bool is_sound(TopicKind kind, const CdrSample& sample, Sample<Message>& message);
   void take_from_ros(const Now& now);
   void take_questions(Server& server);
   void follow_the_catalogue(Server& server);
@@ -81,8 +87,14 @@ class LiveSource final : public Source {
   bool is_merging_ = false;  // there are partners, or reports carry only what changed
   bool has_looked_ = false;  // for these, in the first report
   MergedReports merged_;
+  client::ReportJudge judge_;
+  std::map<TopicKind, client::RefusedMessages> refused_;  // of other topics than that of reports
   Sample<clearance_msg_Distances> report_;
   Sample<clearance_msg_Health> health_;
+  Sample<clearance_msg_ZoneState> zone_;
+  Sample<clearance_msg_Catalogue> catalogue_;
+  Sample<clearance_msg_Separation> separation_;
+  Sample<clearance_msg_Gradients> gradients_;
   bool heard_ = false;           // a report has come since there is a viewer, or since one asked
   std::int64_t watched_ns_ = 0;  // when there was one last, CLOCK_MONOTONIC
 };

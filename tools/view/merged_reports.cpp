@@ -2,8 +2,6 @@
 
 #include <fmt/format.h>
 
-#include "monitor/wire/report_checksum.hpp"
-
 namespace clearance::view {
 namespace {
 
@@ -18,14 +16,15 @@ bool is_recent(std::int64_t then_ns, std::int64_t now_ns, std::int64_t limit_ns)
 
 }  // namespace
 
-bool MergedReports::take(const clearance_msg_Distances& report, std::int64_t steady_ns) {
+bool MergedReports::take(const clearance_msg_Distances& report, std::int64_t steady_ns,
+                         bool is_sound) {
   using enum client::PartnerState;
   if (*report.partner == '\0' && report.checksum == 0) {
     single_ns_ = steady_ns;
-    return true;
+    return is_sound;
   }
   partner_ns_ = steady_ns;
-  if (!merge_.take(report, steady_ns, has_its_crc(report))) return false;
+  if (!merge_.take(report, steady_ns, is_sound)) return false;
   const client::PartnerCheck& check = merge_.check();
   have_met_ |= check.state != kAlone;
   const bool is_lost_here = check.state == kMissing && is_recent(lost_ns_, steady_ns, kToldForNs);

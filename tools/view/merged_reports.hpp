@@ -13,7 +13,9 @@ namespace clearance::view {
 class MergedReports {
  public:
   // Take a message of any daemon, in the order of arrival; CLOCK_MONOTONIC. True: it is shown.
-  [[nodiscard]] bool take(const clearance_msg_Distances& report, std::int64_t steady_ns);
+  // `is_sound`: it has the CRC that it states.
+  [[nodiscard]] bool take(const clearance_msg_Distances& report, std::int64_t steady_ns,
+                          bool is_sound);
   // The health of the leading partner is shown, so that figures do not alternate.
   [[nodiscard]] bool take(const clearance_msg_Health& health, std::int64_t steady_ns);
   // Reports may have been lost here: no partner is missing because of that.

@@ -73,6 +73,10 @@ class Feed {
   [[nodiscard]] std::uint32_t publishers() const { return reports_.daemons(); }
   // The reason why the reports of a present daemon do not come; empty when none is known.
   [[nodiscard]] std::string refusal() const { return reports_.refusal(); }
+  // The messages of other topics that are not as the daemon wrote them; empty: none came.
+  [[nodiscard]] std::string refused() const {
+    return client::text_of({catalogue_.refused(), health_.refused(), zones_.refused()});
+  }
   // While no report has come: the shares of a cell whose daemons are there (SHARES.md).
   [[nodiscard]] std::set<std::string> shares() const;
   // Says whether the daemons are partners, whose reports are merged, and whether the two agree. The

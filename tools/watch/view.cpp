@@ -109,6 +109,7 @@ Line title_line(const Feed& feed, const ViewContext& context, std::size_t width)
                     Style::kAlarm);
   }
   line.add("live", Style::kGood).add(fmt::format("  cycle {}", feed.distances().cycle));
+  if (!feed.refused().empty()) line.add("  " + feed.refused(), Style::kAlarm);
   return feed.has_partner() ? add_partner(line, feed) : line;
 }
 
@@ -351,9 +352,8 @@ std::string plain_line(const Feed& feed, const ViewContext& context) {
     text += fmt::format("  zone {}{}", name_of(feed, id, zone.name),
                         why.empty() ? fmt::format(" ({})", feed.pair_name(zone.pair)) : why);
   }
-  for (const std::string& each : separation_texts(feed)) text += fmt::format("  {}", each);
-  for (const std::string& each : contact_texts(feed)) text += fmt::format("  {}", each);
-  for (const std::string& each : witness_texts(feed)) text += fmt::format("  {}", each);
+  for (const auto& texts : {separation_texts(feed), contact_texts(feed), witness_texts(feed)})
+    for (const std::string& each : texts) text += fmt::format("  {}", each);
   if (const auto* health = feed.health()) {
     text += fmt::format("  tick p50 {:.1f} p99.9 {:.1f} max {:.1f} us  overruns {}",
                         health->tick_p50_us, health->tick_p999_us, health->tick_max_us,
@@ -375,7 +375,8 @@ std::string final_summary(const Feed& feed, double seconds, std::int64_t now_ns)
     text += fmt::format("{} of them were old when they were read, up to {:.1f} s\n", old.count,
                         seconds_of(old.oldest_ns));
   }
-  if (const std::string why = frozen(feed, now_ns); !why.empty()) text += fmt::format("{}\n", why);
+  for (const std::string& why : {frozen(feed, now_ns), feed.refused()})
+    if (!why.empty()) text += fmt::format("{}\n", why);
   if (feed.has_partner())
     text += fmt::format("partners {}\n", counted_partners(feed.partner_counts()));
   if (feed.smallest().known) {

@@ -15,6 +15,7 @@
 #include "monitor/participant/command_message.hpp"
 #include "monitor/participant/participant.hpp"
 #include "monitor/wire/dds_sample.hpp"
+#include "tests/shared/sealed.hpp"
 
 namespace clearance::test {
 
@@ -46,8 +47,8 @@ class AnsweringDaemon {
       const auto command = from_wire(*message);
       ASSERT_TRUE(std::holds_alternative<Command>(command));
       for (const CommandResult& result : answer_(std::get<Command>(command))) {
-        const auto answer = to_wire(result, 7);
-        check_dds(dds_write(results_, &*answer), "writing");
+        auto answer = to_wire(result, 7);
+        write_sealed(participant_, results_, *answer);
       }
     }
   }

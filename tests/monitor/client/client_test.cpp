@@ -13,6 +13,7 @@
 #include "monitor/participant/participant.hpp"
 #include "monitor/wire/report_checksum.hpp"
 #include "tests/shared/loopback.hpp"
+#include "tests/shared/sealed.hpp"
 
 namespace clearance {
 namespace {
@@ -77,7 +78,7 @@ class Daemon {
     }
     reserve_sequence(catalogue->joints, 1);
     catalogue->joints._buffer[catalogue->joints._length++] = {0, dds_string_dup("elbow")};
-    check_dds(dds_write(catalogue_, &*catalogue), "writing");
+    test::write_sealed(participant_, catalogue_, *catalogue);
   }
 
   Participant& participant() { return participant_; }
@@ -255,12 +256,12 @@ bool take(dds_entity_t reader, Sample<T>& sample) {
 TEST(Client, BelievesTheLaterOfTwoDaemonsAboutAZoneAsLongAsItIsThere) {
   const DdsOptions dds = test::own_dds();
   Participant one(dds), other(dds);
-  const auto write = [](dds_entity_t writer, std::uint64_t daemon, bool active, std::int64_t now) {
+  const auto write = [&](dds_entity_t writer, std::uint64_t daemon, bool active, std::int64_t now) {
     clearance_msg_ZoneState zone{};
     zone.daemon = daemon;
     zone.active = active;
     zone.now_ns = now;
-    ASSERT_EQ(dds_write(writer, &zone), DDS_RETCODE_OK);
+    test::write_sealed(one, writer, zone);
   };
   const dds_entity_t leader = one.writer(TopicKind::kZones, Topics{}.zones);
   const dds_entity_t apart = other.writer(TopicKind::kZones, Topics{}.zones);
@@ -291,7 +292,7 @@ TEST(Client, HasTheZonesActiveThatTheReportLists) {
   clearance_msg_ZoneState clear{};
   clear.daemon = 1;
   clear.clearance = 2.0;
-  ASSERT_EQ(dds_write(writer, &clear), DDS_RETCODE_OK);
+  test::write_sealed(daemon, writer, clear);
   client::Connection connection(dds, Topics{});
   client::Zones zones(connection);
   ASSERT_TRUE(eventually([&] { return zones.update(), zones.states().contains(0); }));

@@ -13,6 +13,7 @@
 #include "monitor/wire/report_checksum.hpp"
 #include "tests/config/cells.hpp"
 #include "tests/shared/loopback.hpp"
+#include "tests/shared/sealed.hpp"
 
 namespace clearance::client {
 
@@ -50,7 +51,7 @@ class ShareDaemon {
     }
     auto catalogue = make_catalogue(cell);
     catalogue->daemon = id;
-    check_dds(dds_write(catalogue_, &*catalogue), "writing");
+    test::write_sealed(participant_, catalogue_, *catalogue);
   }
   [[nodiscard]] bool is_heard() const { return test::matched_readers(distances_) > 0; }
   // Reports say from now on that it has so many pairs, or they have these bits.
@@ -74,8 +75,7 @@ class ShareDaemon {
     message.scene_revision = revision_;
     message.pairs_total = pairs_;
     message.state_checksum = state_;
-    seal(message, participant_.address(topics_.distances));
-    check_dds(dds_write(distances_, &message), "writing");
+    test::write_sealed(participant_, distances_, message);
   }
   void zones(std::uint64_t cycle, bool active) {
     for (const std::uint32_t zone : {kWide, kFar}) {
@@ -87,7 +87,7 @@ class ShareDaemon {
       state.cause = active ? static_cast<std::uint8_t>(ZoneCause::kNear) : std::uint8_t{0};
       state.cycle = cycle;
       state.now_ns = now_ns(cycle);
-      check_dds(dds_write(zones_, &state), "writing");
+      test::write_sealed(participant_, zones_, state);
     }
   }
 

@@ -11,6 +11,7 @@
 #include "tests/monitor/tick/small_cells.hpp"
 #include "tests/shared/logged.hpp"
 #include "tests/shared/loopback.hpp"
+#include "tests/shared/sealed.hpp"
 
 namespace clearance {
 namespace {
@@ -103,10 +104,11 @@ TEST_F(APartner, ThatHasAnotherSceneLeavesNoZonesAndNoCatalogue) {
   const dds_entity_t catalogue = of_partner.writer(TopicKind::kCatalogue, cell.topics.catalogue);
   Cell changed = watched_cell();
   changed.scene.revision = 6;
-  check_dds(dds_write(catalogue, &*make_catalogue(changed)), "writing");
+  auto names_of_it = make_catalogue(changed);
+  test::write_sealed(of_partner, catalogue, *names_of_it);
   clearance_msg_ZoneState state{};
   state.zone = 7;
-  check_dds(dds_write(zones, &state), "writing");
+  test::write_sealed(of_partner, zones, state);
   port.start({.wants_state = [] {}, .send_state = [] {}, .take_state = [](const auto&) {}});
   tick(0.3, kFollowing);
   EXPECT_EQ(latched(3), (Active{{kNear, false}, {kWide, true}, {7, false}}));
@@ -146,7 +148,7 @@ TEST_F(APartner, ThatStartsLeavesNoZonesAndNoCatalogue) {
   const dds_entity_t zones = late.participant().writer(TopicKind::kZones, cell.topics.zones);
   clearance_msg_ZoneState state{};
   state.zone = 7;
-  check_dds(dds_write(zones, &state), "writing");
+  test::write_sealed(late.participant(), zones, state);
   EXPECT_EQ(latched(1), (Active{{7, false}}));
   names.update();
   EXPECT_EQ(names.message(), nullptr);
@@ -180,7 +182,7 @@ TEST_F(APartner, ThatDisagreesKeepsAZoneActiveThatTheOtherOneClears) {
   state.zone = kWide;
   state.daemon = 77;
   state.now_ns = now + 1;
-  check_dds(dds_write(zones, &state), "writing");
+  test::write_sealed(other, zones, state);
   client::Connection connection(dds, cell.topics);
   client::Zones seen(connection);
   EXPECT_TRUE(eventually([&] {
@@ -253,12 +255,12 @@ TEST(PartnersZones, AStateThatCameTooEarlyCountsOnceTheOtherDaemonHasGone) {
   {
     Participant leaves(dds);
     const dds_entity_t leaving = leaves.writer(TopicKind::kZones, connection.topics().zones);
-    const auto ahead = state(1, false, 1000), behind = state(2, true, 995);
-    check_dds(dds_write(staying, &behind), "writing");
+    auto ahead = state(1, false, 1000), behind = state(2, true, 995);
+    test::write_sealed(stays, staying, behind);
     ASSERT_TRUE(eventually([&] { return is_active(true); }));
-    check_dds(dds_write(leaving, &ahead), "writing");
+    test::write_sealed(leaves, leaving, ahead);
     ASSERT_TRUE(eventually([&] { return is_active(false); }));
-    check_dds(dds_write(staying, &behind), "writing");
+    test::write_sealed(stays, staying, behind);
     zones.update();
   }
   EXPECT_TRUE(eventually([&] { return is_active(true); }));
@@ -275,9 +277,9 @@ TEST(PartnersZones, TheStateOfTheLatestTickCountsAsLongAsItsDaemonIsThere) {
     state.daemon = daemon;
     state.active = active;
     state.now_ns = now_ns;
-    check_dds(dds_write(writer, &state), "writing");
+    test::write_sealed(connection.participant(), writer, state);
     state.zone = static_cast<std::uint32_t>(now_ns);  // to be seen when it has come
-    check_dds(dds_write(writer, &state), "writing");
+    test::write_sealed(connection.participant(), writer, state);
     EXPECT_TRUE(eventually([&] {
       zones.update();
       return zones.states().contains(state.zone);

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <regex>
 #include <set>
 
 #include "monitor/recording/layout_change.hpp"
@@ -12,8 +13,10 @@
 #include "monitor/wire/cdr.hpp"
 #include "monitor/wire/convert.hpp"
 #include "monitor/wire/gradient_message.hpp"
-#include "monitor/wire/message_fields.hpp"
+#include "monitor/wire/slow_message_fields.hpp"
 #include "tests/monitor/tick/scara_cell.hpp"
+#include "tests/shared/places.hpp"
+#include "tests/shared/scratch_folder.hpp"
 
 namespace clearance::test {
 namespace {
@@ -187,6 +190,36 @@ TYPED_TEST(ListOf, NamesEveryFieldThatTheIdlHasOnce) {
   ASSERT_TRUE(our_idl().structs.contains(type));
   for (const IdlField& field : our_idl().structs.at(type)->fields) defined.push_back(field.name);
   EXPECT_THAT(listed, testing::UnorderedElementsAreArray(defined));
+}
+
+template <class Record>
+class OrderOfList : public testing::Test {};
+using SlowRecords = testing::Types<
+    clearance_msg_RejectCount, clearance_msg_SourceHealth, clearance_msg_InputAge,
+    clearance_msg_JointAge, clearance_msg_InputNote, clearance_msg_PartnerHealth,
+    clearance_msg_ShareHealth, clearance_msg_WitnessHealth, clearance_msg_InputResponse,
+    clearance_msg_Health, clearance_msg_CatalogueObject, clearance_msg_CataloguePair,
+    clearance_msg_CatalogueZone, clearance_msg_CatalogueJoint, clearance_msg_CatalogueContact,
+    clearance_msg_CatalogueShare, clearance_msg_Catalogue, clearance_msg_CommandResult,
+    clearance_msg_MarginVerdict, clearance_msg_ProfilePart, clearance_msg_Answer>;
+TYPED_TEST_SUITE(OrderOfList, SlowRecords);
+
+// The place of a name decides which member it names.
+TYPED_TEST(OrderOfList, IsThatOfTheIdl) {
+  std::vector<std::string> listed, defined;
+  FieldsOf<TypeParam>::for_each([&](const Field& field) { listed.emplace_back(field.name); });
+  std::string text;
+  for (const char* file : {"clearance", "commands", "questions"})
+    text += read_text(places::sources() + "/idl/" + file + ".idl");
+  text = std::regex_replace(text, std::regex("//[^\n]*"), "");
+  const std::string begin = fmt::format("struct {} {{", FieldsOf<TypeParam>::kType);
+  const std::size_t at = text.find(begin);
+  ASSERT_NE(at, std::string::npos);
+  const std::string body = text.substr(at, text.find('}', at) - at);
+  const std::regex name("(\\w+)\\s*;");
+  for (std::sregex_iterator each(body.begin(), body.end(), name), end; each != end; ++each)
+    defined.push_back((*each)[1]);
+  EXPECT_EQ(listed, defined);
 }
 
 // The bytes of one field, found by its name in the IDL: the IDL is reduced to that field. `around`

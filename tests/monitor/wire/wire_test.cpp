@@ -140,17 +140,18 @@ TYPED_TEST(EveryTopic, RefusesTrailingBytesOfAnotherLayout) {
 
 TEST(Cdr, ReadsBigEndianWriters) {
   // ZoneState {zone 2, daemon 3, "stop", active, not certified, cause 2, object 4, pair 5,
-  // clearance 0.5 and 0.25, since 7, cycle 9, now 1}
+  // clearance 0.5 and 0.25, since 7, cycle 9, now 1, checksum 11, address 12}
   constexpr unsigned char kBytes[] = {0,    0,    0, 0,  // encapsulation: XCDR1, big-endian
-                                      0,    0,    0, 2, 0,   0,   0,   0,  // zone, padding to 8
-                                      0,    0,    0, 0, 0,   0,   0,   3,  // daemon
-                                      0,    0,    0, 5, 's', 't', 'o', 'p', 0, 1, 0, 2,  //
-                                      0,    0,    0, 4,                    // cause_object
-                                      0,    0,    0, 5, 0,   0,   0,   0,  // pair, padding to 8
-                                      0x3f, 0xe0, 0, 0, 0,   0,   0,   0,  // 0.5
-                                      0x3f, 0xd0, 0, 0, 0,   0,   0,   0,  // 0.25
-                                      0,    0,    0, 0, 0,   0,   0,   7,   0, 0, 0, 0,
-                                      0,    0,    0, 9, 0,   0,   0,   0,   0, 0, 0, 1};
+                                      0,    0,    0, 2,  0,   0,   0,   0,  // zone, padding to 8
+                                      0,    0,    0, 0,  0,   0,   0,   3,  // daemon
+                                      0,    0,    0, 5,  's', 't', 'o', 'p', 0, 1, 0, 2,  //
+                                      0,    0,    0, 4,                     // cause_object
+                                      0,    0,    0, 5,  0,   0,   0,   0,  // pair, padding to 8
+                                      0x3f, 0xe0, 0, 0,  0,   0,   0,   0,  // 0.5
+                                      0x3f, 0xd0, 0, 0,  0,   0,   0,   0,  // 0.25
+                                      0,    0,    0, 0,  0,   0,   0,   7,   0, 0, 0, 0, 0, 0,
+                                      0,    9,    0, 0,  0,   0,   0,   0,   0, 1, 0, 0, 0, 0,
+                                      0,    0,    0, 11, 0,   0,   0,   0,   0, 0, 0, 12};
   Sample<clearance_msg_ZoneState> zone;
   CdrDecoder decoder;
   ASSERT_TRUE(decoder.decode(std::as_bytes(std::span(kBytes)), zone));
@@ -167,6 +168,8 @@ TEST(Cdr, ReadsBigEndianWriters) {
   EXPECT_EQ(7u, zone->since_cycle);
   EXPECT_EQ(9u, zone->cycle);
   EXPECT_EQ(1, zone->now_ns);
+  EXPECT_EQ(11u, zone->delivery_checksum);
+  EXPECT_EQ(12u, zone->address);
 }
 
 TEST(Cdr, RefusesASequenceBeyondItsBound) {

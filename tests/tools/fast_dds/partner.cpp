@@ -159,6 +159,7 @@ json zone_states(Cdr& cdr) {
     for (const char* name : {"clearance", "swept_clearance"}) zone[name] = number(cdr);
     for (const char* name : {"since_cycle", "cycle"}) zone[name] = take<std::uint64_t>(cdr);
     zone["now_ns"] = take<std::int64_t>(cdr);
+    for (const char* name : {"delivery_checksum", "address"}) zone[name] = take<std::uint64_t>(cdr);
     out.push_back(zone);
   }
   return out;

@@ -10,7 +10,7 @@
 #include <type_traits>
 #include <vector>
 
-#include "monitor/wire/message_fields.hpp"
+#include "monitor/wire/slow_message_fields.hpp"
 #include "tools/python/module/arrays.hpp"
 
 namespace clearance::python {
@@ -66,8 +66,8 @@ template <class Message>
 template <class Message>
 [[nodiscard]] py::dict fields_of(const Message& message);
 
-// A number, a text, a record without its texts, or of a sequence an array: of numbers, of records,
-// or a list of dicts where a record would lose a text.
+// A number, a text, a record, or of a sequence an array of numbers or of records. A dict stands for
+// a record that would lose a text.
 template <class T>
 [[nodiscard]] py::object value_of(const T& value) {
   if constexpr (std::is_arithmetic_v<T>) {
@@ -88,6 +88,7 @@ template <class T>
       return items;
     }
   } else {
+    if (holds_text<T>()) return fields_of(value);
     return records_of(dtype_of<T>(), &value, 1)[py::int_(0)];
   }
 }

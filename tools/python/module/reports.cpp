@@ -186,6 +186,15 @@ Raises ValueError and DdsError.)")
       .def_property_readonly(
           "refusal", [](Reports& self) { return self.use()->stream.refusal(); },
           "Why an existing daemon cannot be heard, for a person; or empty.")
+      .def_property_readonly(
+          "refused",
+          [](Reports& self) {
+            const Reports::Use parts = self.use();
+            return client::text_of(
+                {parts->catalogue.refused(), parts->zones.refused(), parts->health.refused()});
+          },
+          "Which messages of catalogue, zones and health were not as the daemon wrote them, for a "
+          "person; or empty.")
       .def_property_readonly("zones", &Reports::zones,
                              R"(The last known state of each zone: a dict of records by name.
 

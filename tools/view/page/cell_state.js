@@ -6,7 +6,7 @@ const OVERLAPPING = STATUS.indexOf("overlapping");
 const ALLOWED = 1; // ContactStatus of monitor/interface/report.hpp
 const SILENT_S = 1.0;
 const TOLD_FOR_S = 5.0; // display time of an overrun
-const LIVE = "partners"; // the server's status while what is shown is the present state all the same
+const LIVE = ["partners", "refused"]; // the server's statuses while what is shown is the present state all the same
 const HEALTH_AGAIN_S = 2.5; // a longer gap means that a recording was moved
 
 export class CellState {
@@ -136,7 +136,7 @@ export class CellState {
     const found = [];
     if (!this.connected) found.push({ level: "alarm", frozen: true, text: "Connection to clearance-view lost" });
     for (const [id, { level, text }] of this.statuses) {
-      found.push({ level: level > 1 ? "alarm" : "near", frozen: id !== LIVE, text });
+      found.push({ level: level > 1 ? "alarm" : "near", frozen: !LIVE.includes(id), text });
     }
     const silent = this.secondsSilent();
     if (this.connected && !found.some(({ frozen }) => frozen) && silent > SILENT_S) {
