@@ -19,8 +19,8 @@ struct BlindShell {
   std::size_t elements = 0;
   double thickness = 0.0;  // m: no point of a shelved element is farther from the part
   double shell = 0.0;      // m: the widest that shelved one
-  // Of every kSampled-th shelved element: their number, and the number of those that are deep, so
-  // that the sensor has seen through the part's surface (CentreLimit::depth).
+  // Of every sampled_stride()-th shelved element: their number, and the number of those that are
+  // deep, so that the sensor has seen through the part's surface (CentreLimit::depth).
   std::size_t sampled = 0, deep = 0;
   // A box of the cloud's frame that contains the shelved elements, m; low > high: none were.
   Vec3 low = Vec3::Constant(kInfinity), high = Vec3::Constant(-kInfinity);
@@ -53,7 +53,11 @@ struct CentreLimit {
 };
 
 // A depth costs up to a hundred queries, and a body that fills the picture has a thousand samples.
-inline constexpr std::size_t kSampled = 256;
+// A small one has a sample of each eight elements. The first elements of a part tend to be at its
+// edge, where nothing is deep.
+[[nodiscard]] constexpr std::size_t sampled_stride(std::size_t elements) noexcept {
+  return elements < 512 ? 8 : 256;
+}
 
 // Shelves every element that comes within `shell` (m, >= 0) of the part: queries do not meet it any
 // more. The pose is that of the frame's stamp, never the present one. A surface of the robot lies

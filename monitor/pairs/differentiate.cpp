@@ -9,8 +9,10 @@
 namespace clearance {
 namespace {
 
-// Distance, witness points and normal are of this tick.
-bool is_of_this_tick(PairStatus status) noexcept { return status <= PairStatus::kIterationLimit; }
+// Distance, witness points and normal are of this tick. An image without elements has no normal.
+bool has_normal(const PairReport& pair) noexcept {
+  return pair.status <= PairStatus::kIterationLimit && pair.normal.allFinite();
+}
 
 }  // namespace
 
@@ -71,7 +73,7 @@ void Differentiation::differentiate(std::span<const PairReport> pairs, const Tic
     const PairReport& pair = pairs[row.published];
     const std::span<double> rates =
         std::span(gradients.rates).subspan(row.first, row.end - row.first);
-    if (!is_of_this_tick(pair.status)) {
+    if (!has_normal(pair)) {
       std::ranges::fill(rates, std::numeric_limits<double>::quiet_NaN());
       gradients.drifts[r] = std::numeric_limits<double>::quiet_NaN();
       gradients.alternatives[r] = unknown_alternative();

@@ -29,8 +29,6 @@ class Persistence {
   // cloud in `unseen`. Returns how many elements are hidden. Deterministic.
   std::size_t hide(SeenCloud& cloud, const Pose& world_from_sensor, double error,
                    std::int64_t stamp_ns, std::span<DepthCloud> unseen);
-  // False: no frame yet could show what has been there from the start.
-  [[nodiscard]] bool is_filled() const noexcept { return count_ >= frames_; }
 
  private:
   // The cells that the elements of a frame touch, as a set of hashes.

@@ -175,9 +175,9 @@ TEST_F(CommandedPartners, ACommandThatIsSentAgainToTheOtherOneIsAnsweredAndNotDo
   daemons["left"]->signal(SIGKILL);
   daemons["left"]->wait();
   client.forget();
-  const CommandResult again = client.result_of(command);
-  EXPECT_TRUE(again.done()) << again.reason << logs();
-  EXPECT_EQ(again.scene_revision, done.scene_revision);
+  const CommandResult second = client.result_of(command);
+  EXPECT_TRUE(second.done()) << second.reason << logs();
+  EXPECT_EQ(second.scene_revision, done.scene_revision);
   const CommandResult next = client.result_of(margin(3));
   EXPECT_TRUE(next.done()) << next.reason;
 }

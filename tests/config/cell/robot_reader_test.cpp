@@ -182,13 +182,15 @@ TEST_F(Robots, PairsThatTheSrdfDisablesMayTouch) {
 // Each topic of joint states is a source, and so is tf for their bases.
 TEST_F(Robots, ThatCanNeedMoreSourcesThanAreHeardSaySo) {
   const auto is_said = [this](int robots, const std::string& more) {
-    std::string list;
-    for (int i = 0; i < robots; ++i)
+    std::string list, pairs = "pairs:\n";
+    for (int i = 0; i < robots; ++i) {
       list += fmt::format(
-          "  - {{name: r{0}, prefix: r{0}_, urdf: walker_description/walker.urdf, "
-          "joint_states: /r{0}/joint_states{1}}}\n",
+          "  - {{name: r{0}, prefix: r{0}_, urdf: walker_description/walker.urdf, joint_states: "
+          "/r{0}/joint_states{1}}}\n",
           i, more);
-    const Scene cell = scene(list, "pairs: [{between: [r0, r1]}]\n");
+      if (i > 0) pairs += fmt::format("  - {{between: [r0, r{}]}}\n", i);
+    }
+    const Scene cell = scene(list, pairs);
     return testing::Value(cell.robots.front().notes,
                           testing::Contains(HasSubstr("can need 17 sources, but 16 are heard")));
   };
