@@ -5,6 +5,7 @@
 #include <optional>
 
 #include "config/scene/robot.hpp"
+#include "core/convex_body.hpp"
 #include "monitor/bodies/joint_metric.hpp"
 #include "monitor/inputs/input_record.hpp"
 #include "monitor/inputs/joint_batch.hpp"

@@ -167,7 +167,7 @@ void LiveSource::leave(Server& server) {
   merged_ = {};
   judge_.acknowledge();
   refused_.clear();
-  server.set_status("partners", 0, "");
+  for (const char* status : {"daemon", "partners", "refused"}) server.set_status(status, 0, "");
 }
 
 // The bytes as they came, if they are as the daemon wrote them.

@@ -70,8 +70,8 @@ const Report& Adversary::tick(Monitor& monitor) {
   for (std::uint32_t i = 0; i < objects_.size(); ++i) {
     Told& object = objects_[i];
     if (scene_.objects[i].fixed) continue;
-    move(object);
-    if (is_silent(object)) continue;
+    if (!rests_) move(object);
+    if (!rests_ && is_silent(object)) continue;
     object.sent = object.pose;
     PoseSample told = sample(i, object.pose, now_ns_);
     // Robots send rounded quaternions.

@@ -40,6 +40,8 @@ class Adversary {
 
   // Moves all objects, sends their poses to the monitor, and returns its report.
   const Report& tick(Monitor& monitor);
+  // From now on all objects rest, and every pose comes.
+  void rest() noexcept { rests_ = true; }
 
   // The pose that the monitor's bounds of this tick refer to.
   [[nodiscard]] const Pose& now(std::uint32_t object) const { return objects_[object].now; }
@@ -74,6 +76,7 @@ class Adversary {
   Random random_;
   std::vector<Told> objects_;
   int tick_ = 0;
+  bool rests_ = false;
   std::int64_t now_ns_;
 };
 

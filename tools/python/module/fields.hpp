@@ -66,8 +66,8 @@ template <class Message>
 template <class Message>
 [[nodiscard]] py::dict fields_of(const Message& message);
 
-// A number, a text, a record, or of a sequence an array of numbers or of records. A dict stands for
-// a record that would lose a text.
+// A number, a text, a record without its texts, or of a sequence an array: of numbers, of records,
+// or a list of dicts where a record would lose a text.
 template <class T>
 [[nodiscard]] py::object value_of(const T& value) {
   if constexpr (std::is_arithmetic_v<T>) {
@@ -88,17 +88,19 @@ template <class T>
       return items;
     }
   } else {
-    if (holds_text<T>()) return fields_of(value);
     return records_of(dtype_of<T>(), &value, 1)[py::int_(0)];
   }
 }
 
-// The fields of a message by their names.
+// The fields of a message by their names. One with texts is a dict, too.
 template <class Message>
 [[nodiscard]] py::dict fields_of(const Message& message) {
   py::dict fields;
-  const auto add = [&fields](const clearance::Field& field, const auto& member) {
-    fields[py::str(field.name.data(), field.name.size())] = value_of(member);
+  const auto add = [&fields]<class T>(const clearance::Field& field, const T& member) {
+    const py::str name(field.name.data(), field.name.size());
+    fields[name] = value_of(member);
+    if constexpr (HasFields<T>)
+      if (holds_text<T>()) fields[name] = fields_of(member);
   };
   for_each_field(add, message);
   return fields;
