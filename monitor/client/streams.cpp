@@ -279,11 +279,11 @@ Health::Health(Connection& connection) : reader_(make_reader(connection, TopicKi
 
 // A message that is not of the leader counts when none of a leader has come for two seconds.
 void Health::update() {
-  constexpr std::int64_t kSilentNs = 2'500'000'000;
+  constexpr std::int64_t kNoLeaderNs = 2'500'000'000;
   while (take_one(reader_, *scratch_)) {
     const bool leads = *scratch_->partner.partner == '\0' || scratch_->partner.leads;
     if (leads) leader_ns_ = monotonic_ns();
-    const bool has_leader = leader_ns_ != 0 && monotonic_ns() - leader_ns_ < kSilentNs;
+    const bool has_leader = leader_ns_ != 0 && monotonic_ns() - leader_ns_ < kNoLeaderNs;
     if (!leads && has_leader && scratch_->daemon != message_->daemon) continue;
     std::swap(message_, scratch_);
     known_ = true;
