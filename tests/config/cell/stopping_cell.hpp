@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <string>
-#include <string_view>
 
 #include "tests/config/cells.hpp"
 #include "tests/shared/scratch_folder.hpp"
@@ -50,14 +49,14 @@ class StoppingCells : public testing::Test {
   std::string errors(const std::string& text) { return errors_of(text, folder_ / "cell.yaml"); }
 
   // The index of a joint of the only robot.
-  static std::size_t joint(const Scene& scene, std::string_view name) {
+  static std::size_t joint(const Scene& scene, const std::string& name) {
     const auto& joints = scene.robots.at(0).joints;
     for (std::size_t i = 0; i < joints.size(); ++i)
       if (joints[i].name == name) return i;
     ADD_FAILURE() << name;
     return 0;
   }
-  static const JointStop& stop(const Scene& scene, std::string_view name) {
+  static const JointStop& stop(const Scene& scene, const std::string& name) {
     return scene.robots.at(0).stopping.joints.at(joint(scene, name));
   }
 

@@ -34,7 +34,7 @@ Scene side_by_side(std::uint32_t count) {
 }
 
 // Runs tick number t with the first object at this pose.
-const Report& tick_with_first_at(Pose pose, int t, Monitor& monitor) {
+const Report& tick_with_first_at(const Pose& pose, int t, Monitor& monitor) {
   const PoseSample sample = test::sample(0, pose, kStart + t * kTick);
   return monitor.tick(std::span(&sample, 1), sample.stamp_ns);
 }

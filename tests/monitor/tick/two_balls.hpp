@@ -37,7 +37,7 @@ inline std::uint64_t rejected(const Monitor& monitor, Reject cause) {
   return monitor.rejected(0)[static_cast<std::size_t>(cause)];
 }
 
-inline const Report& tick_with(Monitor& monitor, std::uint32_t object, Pose pose,
+inline const Report& tick_with(Monitor& monitor, std::uint32_t object, const Pose& pose,
                                std::int64_t now_ns) {
   const PoseSample moved = sample(object, pose, now_ns);
   return monitor.tick(std::span(&moved, 1), now_ns);
