@@ -146,9 +146,8 @@ void PartnerPort::hear() {
   }
 }
 
-// After a time without any notice, clocks may have drifted apart, and one that steps makes the
-// least delay wrong. If this process was stopped, how long notices waited for it says nothing of
-// the clocks: their delay is the one before, or none.
+// After a time without any notice, clocks may have drifted apart. If this process was stopped, how
+// long notices waited for it says nothing of the clocks: their delay is the one before, or none.
 void PartnerPort::hear_notices() {
   dds_sample_info_t info;
   const std::int64_t now = SystemClock().monotonic_ns();
@@ -159,10 +158,8 @@ void PartnerPort::hear_notices() {
     const std::int64_t sent = info.source_timestamp;
     const std::int64_t before = delay_.is_known() ? delay_.least() : 0;
     const bool waited = sent + before < went_on_ns_;
-    const std::int64_t delay = dds_time() - sent;
-    const bool has_stepped = delay_.is_known() && delay - before > kHeldUpNs;
-    if (!waited && (std::exchange(is_delay_old_, false) || has_stepped)) delay_ = {};
-    hear_notice(waited ? before : delay_.add(delay));
+    if (!waited && std::exchange(is_delay_old_, false)) delay_ = {};
+    hear_notice(waited ? before : delay_.add(dds_time() - sent));
   }
 }
 

@@ -107,9 +107,9 @@ bool CsvTable::fail(const std::string& what) {
 
 // Reads gzip and plain files alike, since zlib reads both. Returns false at the end of the file.
 bool CsvTable::fill_buffer() {
-  constexpr std::size_t kPiece = std::size_t{1} << 16;
-  buffer_.resize(kPiece);
-  const int count = gzread(static_cast<gzFile>(file_.get()), buffer_.data(), kPiece);
+  constexpr std::size_t kBufferSize = std::size_t{1} << 16;
+  buffer_.resize(kBufferSize);
+  const int count = gzread(static_cast<gzFile>(file_.get()), buffer_.data(), kBufferSize);
   buffer_.resize(static_cast<std::size_t>(std::max(count, 0)));
   next_ = 0;
   return count > 0;

@@ -34,7 +34,7 @@ void MessageTranslator::set_frames(const PlanningScene& message) {
 void MessageTranslator::set_margins(const PlanningScene& message) {
   for (std::size_t i = 0; i < message.link_padding.size(); ++i) {
     const auto& [name, padding] = message.link_padding[i];
-    guarded(name, [&, &name = name, &padding = padding] {
+    guarded(name, [&] {
       if (!(std::isfinite(padding) && padding >= 0.0)) {
         fail(fmt::format("link_padding[{}].padding", i),
              fmt::format("found {}; expected metres, 0 or more", padding));

@@ -95,15 +95,15 @@ void TickPartner::listen() noexcept {
   }
 }
 
-// Notices may be forged. The ticks of both partners are due within two periods, and told times go
-// on without a jump. After a join, the first notice tells theirs.
+// Notices may be forged. A tick is due soon, and later than the one before but for the errors of
+// two clocks, and told times go on without a jump. After a join, the first notice tells both.
 bool TickPartner::is_possible(const TickNotice& notice) noexcept {
   const std::int64_t slack = 2 * options_.period_ns;
   bool is = less(notice.due_ns, clock_.monotonic_ns()) <= slack;
   if (standing_ == PartnerStanding::kFollowing && notice.cycle >= cycle_) {
-    const std::int64_t step = has_joined_ ? 0 : less(ahead_of_own(notice), ahead_of_own_ns_);
-    is = is && less(deadline_, notice.due_ns) <= slack && step >= -kLargestStepNs &&
-         step <= kLargestStepNs;
+    const std::int64_t step = less(ahead_of_own(notice), ahead_of_own_ns_);
+    is = is && (has_joined_ || (less(deadline_, notice.due_ns) <= slack &&
+                                step >= -kLargestStepNs && step <= kLargestStepNs));
   }
   if (!is) ++refused_notices_;
   return is;
@@ -139,7 +139,6 @@ std::int64_t TickPartner::decide(std::int64_t deadline, std::uint64_t cycle,
   using enum PartnerStanding;
   cycle_ = cycle;
   revision_ = revision;
-  deadline_ = deadline;
   store_.take_in();
   listen();
   const std::int64_t late_ns = clock_.monotonic_ns() - deadline;
@@ -165,7 +164,7 @@ std::int64_t TickPartner::decide(std::int64_t deadline, std::uint64_t cycle,
   // again.
   const bool counts_lower = hears && newest_cycle_ > cycle_ + 1;
   is_silent_ = standing_ == kStarting || (standing_ == kApart && counts_lower);
-  return deadline;
+  return deadline_ = deadline;
 }
 
 // The whole process may have been stopped. Two passes of the other thread, the second of which

@@ -136,7 +136,7 @@ class TickPartner final : public PoseSource, public TickPace {
   PartnerStanding standing_ = PartnerStanding::kStarting;
   bool is_silent_ = true;
   std::uint64_t cycle_ = 0, revision_ = 0;  // of the tick that is decided on
-  std::int64_t deadline_ = 0;               // its own, whatever the leader's is
+  std::int64_t deadline_ = 0;               // of the last tick
   std::uint64_t term_ = 0;
   std::uint64_t lineage_, before_ = 0, since_cycle_ = 0, becoming_ = 0;
   std::uint64_t seed_;

@@ -1,8 +1,10 @@
 """The package is installed by CMake, and by pip without a network, and works from there."""
 
 import os
+import re
 import subprocess
 import sys
+import zipfile
 
 from conftest import SOURCE
 
@@ -49,6 +51,24 @@ def test_pip_installs_the_package_without_a_network(tmp_path):
     expect_package(tmp_path)
     listed = run(sys.executable, "-m", "pip", "list", "--path", tmp_path)
     assert "clearance" in listed
+
+
+def test_a_wheel_with_its_libraries_needs_the_system_alone(tmp_path):
+    run(
+        sys.executable, "-m", "pip", "wheel", "--no-index", "--no-deps", "--no-build-isolation",
+        "--disable-pip-version-check", "--config-settings", "libraries=inside", "-w", tmp_path, SOURCE / "tools/python",
+    )
+    [wheel] = tmp_path.glob("clearance-*.whl")
+    with zipfile.ZipFile(wheel) as packed:
+        packed.extractall(tmp_path / "unpacked")
+    [extension] = tmp_path.glob("unpacked/clearance/_clearance*.so")
+    listed = re.findall(r"(\S+) => (not found|\S+)", run("ldd", extension))
+    inside = {name for name, path in listed if "/clearance/../clearance.libs/" in path}
+    outside = {name for name, _ in listed} - inside
+    assert len(inside) > 10 and all(re.fullmatch(r"lib(c|m|gcc_s|stdc\+\+)\.so\.\d+", name) for name in outside), listed
+    expect_package(tmp_path / "unpacked")
+    terms = {file.name for file in tmp_path.glob("unpacked/*.dist-info/licenses/*")}
+    assert {"libddsc0debian", "libgmp10"} <= terms and len(terms) <= len(inside)
 
 
 def test_pip_names_a_build_folder_that_is_none(tmp_path):

@@ -181,13 +181,13 @@ std::vector<LinkExtent> extents_at_zero(const Scene& scene) {
 }
 
 double reach_to_the_front(const Scene& scene) {
-  constexpr int kSamples = 5'000;
+  constexpr int kConfigurations = 5'000;
   const Robot& robot = scene.robots.front();
   Posable posed(scene);
   posed.pose_at_zero();
   SeededDraw draw(1);
   double reach = -kInfinity;
-  for (int i = 0; i <= kSamples; ++i) {
+  for (int i = 0; i <= kConfigurations; ++i) {
     for (std::uint32_t link = 0; link < robot.links.size(); ++link) {
       const std::uint32_t object = robot.links[link].object;
       if (object == RobotLink::kNoObject) continue;

@@ -190,7 +190,7 @@ TEST_F(Robots, ThatCanNeedMoreSourcesThanAreHeardSaySo) {
           i, more);
       if (i > 0) pairs += fmt::format("  - {{between: [r0, r{}]}}\n", i);
     }
-    const Scene cell = scene(list, pairs);
+    const Scene cell = scene(list, "ros2: {world_frame: map}\n" + pairs);
     return testing::Value(cell.robots.front().notes,
                           testing::Contains(HasSubstr("can need 17 sources, but 16 are heard")));
   };

@@ -5,6 +5,8 @@ unless a name ends in _ns. Quaternions are x, y, z, w. An unknown bound is infin
 figure is NaN.
 """
 
+from typing import TYPE_CHECKING
+
 try:
     import numpy as _numpy  # the extension loads it only when it makes the first array
 except ImportError as error:
@@ -12,39 +14,26 @@ except ImportError as error:
         "clearance needs NumPy: 'sudo apt install python3-numpy', or 'pip install numpy' in a virtual environment"
     ) from error
 
+from . import _clearance
 from ._clearance import (
     Body,
     Cell,
     CellError,
-    ClosedError,
-    CommandResult,
-    Commands,
-    CommandStatus,
-    Connection,
-    DdsError,
     Distance,
     DistanceBatch,
     DistancePath,
     Distances,
     DistanceStatus,
-    JointWriter,
     MarginAnswer,
     MotionAnswer,
     PairStatus,
     Pose,
-    PoseWriter,
     Question,
-    Questions,
     QuestionStatus,
     RelativePose,
     ReplayCheck,
     ReplayError,
-    Report,
-    ReportError,
-    Reports,
     ShapeError,
-    SharedCell,
-    ShareState,
     TimeLimit,
     TrackingState,
     Verdict,
@@ -118,3 +107,32 @@ __all__ = [
     "segment",
     "truncated_cone",
 ]
+
+if TYPE_CHECKING or hasattr(_clearance, "Connection"):
+    from ._clearance import (
+        ClosedError,
+        CommandResult,
+        Commands,
+        CommandStatus,
+        Connection,
+        DdsError,
+        JointWriter,
+        PoseWriter,
+        Questions,
+        Report,
+        ReportError,
+        Reports,
+        SharedCell,
+        ShareState,
+    )
+else:
+    _live = {name for name in __all__ if not hasattr(_clearance, name)}
+    __all__ = [name for name in __all__ if name not in _live]
+
+    def __getattr__(name):
+        if name not in _live:
+            raise AttributeError(f"module 'clearance' has no attribute '{name}'")
+        raise ImportError(
+            f"clearance.{name} talks to a daemon over DDS, which this wheel does without: install the package "
+            "python3-clearance, or 'pip install tools/python' in a source tree"
+        )

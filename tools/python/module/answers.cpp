@@ -8,10 +8,9 @@
 #include <vector>
 
 #include "monitor/ask/named_answer.hpp"
-#include "monitor/client/questions.hpp"
+#include "monitor/interface/question.hpp"
 #include "tools/python/module/arrays.hpp"
 #include "tools/python/module/cell.hpp"
-#include "tools/python/module/connection.hpp"
 #include "tools/python/module/module.hpp"
 
 namespace clearance::python {

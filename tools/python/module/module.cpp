@@ -63,10 +63,9 @@ PYBIND11_MODULE(_clearance, module) {
   add_batch(module);
   add_cell(module);
   add_replay(module);
-  add_reports(module);
-  add_shared_cell(module);
-  add_writers(module);
-  add_commands(module);
+#ifdef CLEARANCE_PYTHON_DDS
+  add_live(module);
+#endif
   refuse_the_common_base();
   refuse_new_without_init(module);
 }

@@ -10,10 +10,8 @@ void add_distance(pybind11::module_& module);
 void add_batch(pybind11::module_& module);
 void add_cell(pybind11::module_& module);
 void add_replay(pybind11::module_& module);
-void add_reports(pybind11::module_& module);
-void add_shared_cell(pybind11::module_& module);
-void add_writers(pybind11::module_& module);
-void add_commands(pybind11::module_& module);
 void add_answers(pybind11::module_& module);
+// What talks over DDS, where CLEARANCE_PYTHON_DDS is on.
+void add_live(pybind11::module_& module);
 
 }  // namespace clearance::python

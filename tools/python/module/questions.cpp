@@ -1,5 +1,4 @@
-// clearance.Question: monitor/ask, and monitor/client/questions.hpp for a daemon.
-#include "monitor/client/questions.hpp"
+// clearance.Question, and its answer by a cell: monitor/ask.
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
@@ -16,10 +15,11 @@
 
 #include "monitor/ask/asker.hpp"
 #include "monitor/ask/named_answer.hpp"
+#include "monitor/interface/question.hpp"
 #include "tools/python/module/arrays.hpp"
 #include "tools/python/module/cell.hpp"
-#include "tools/python/module/connection.hpp"
 #include "tools/python/module/module.hpp"
+#include "tools/python/module/waiting.hpp"
 
 namespace clearance::python {
 namespace {
@@ -203,44 +203,6 @@ QuestionResult ask_cell(const CellObject& cell, const Question& asked) {
   return result;
 }
 
-struct QuestionParts {
-  QuestionParts(SharedConnection joined, const std::string& client)
-      : connection(std::move(joined)), questions(*connection, client) {}
-  SharedConnection connection;
-  client::Questions questions;
-};
-
-class Questions : public Live<QuestionParts> {
- public:
-  Questions(const std::string& client, const SharedConnection& connection)
-      : Live("Questions", connection_of(connection), client) {}
-
-  QuestionResult ask(const Question& question, double timeout, std::uint64_t revision) {
-    if (!(timeout >= 0.0 && timeout <= 1e6))
-      throw py::value_error("timeout: expected seconds, 0 to 1e6");
-    const Use parts = use();
-    bool stopped = false;
-    const client::QuestionOptions options{.scene_revision = revision,
-                                          .stop = [&stopped] { return stopped = interrupted(); }};
-    std::optional<QuestionResult> result;
-    {
-      const Unlocked unlock;
-      result = parts->questions.ask(
-          question, options, std::chrono::nanoseconds(static_cast<std::int64_t>(1e9 * timeout)));
-    }
-    if (stopped) throw py::error_already_set();
-    if (result) return *result;
-    const std::string why =
-        parts->questions.is_heard()
-            ? "nothing is known of the motion; the daemon may still answer, so ask again "
-              "with a longer timeout"
-            : "no daemon answers questions on " + parts->connection->where();
-    PyErr_SetString(PyExc_TimeoutError,
-                    fmt::format("no answer came within {} s: {}", timeout, why).c_str());
-    throw py::error_already_set();
-  }
-};
-
 void add_question(py::module_& module) {
   using Empty = std::map<std::string, py::object>;
   py::class_<Question>(module, "Question",
@@ -306,26 +268,6 @@ The question states all joints and all objects that move. Returns a MotionAnswer
 with the reason if the question does not fit the cell. Releases the interpreter's lock.)";
   cells.def("ask", &ask_cell, py::arg("question"), kAsk);
   module.def("ask", &ask_cell, py::arg("cell"), py::arg("question"), kAsk);
-  py::class_<Questions> questions(module, "Questions", R"(Asks a running daemon about motions.
-
-The daemon adds where joints and objects are now (idl/QUESTIONS.md).)");
-  questions
-      .def(
-          py::init<const std::string&, const SharedConnection&>(), py::arg("client"),
-          py::arg("connection") = py::none(),
-          R"(client: a name of 1 to 32 bytes under `questions` of the daemon's cell, which no other running
-program uses. Raises ValueError and DdsError.)")
-      .def("ask", &Questions::ask, py::arg("question"), py::arg("timeout") = 10.0, py::kw_only(),
-           py::arg("revision") = 0,
-           R"(Asks, and waits for the answer.
-
-revision: refused unless this scene is in force; 0: any. Returns a MotionAnswer, also of a refusal:
-look at `answered`, or at is_free(). Raises ValueError for a payload with a Body that has more than 256
-vertices or rounded ones, as half-spaces have, and TimeoutError when no answer came within `timeout` s. Releases the interpreter's lock; Ctrl-C ends it.)")
-      .def_property_readonly(
-          "is_heard", [](Questions& self) { return self.use()->questions.is_heard(); },
-          "True when a daemon answers questions on this topic.");
-  add_closing(questions);
 }
 
 }  // namespace clearance::python

@@ -21,8 +21,6 @@ using SharedConnection = std::shared_ptr<client::Connection>;
 // defaults.
 [[nodiscard]] SharedConnection connection_of(const SharedConnection& given);
 
-void add_connection(pybind11::module_& module);
-
 class ClosedError : public std::runtime_error {
   using std::runtime_error::runtime_error;
 };

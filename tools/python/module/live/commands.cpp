@@ -9,8 +9,8 @@
 
 #include "config/edit/change_reader.hpp"
 #include "tools/python/module/arrays.hpp"
-#include "tools/python/module/connection.hpp"
-#include "tools/python/module/module.hpp"
+#include "tools/python/module/live/connection.hpp"
+#include "tools/python/module/live/live.hpp"
 
 namespace clearance::python {
 namespace {

@@ -1,4 +1,4 @@
-#include "tools/python/module/report.hpp"
+#include "tools/python/module/live/report.hpp"
 
 #include <fmt/format.h>
 
@@ -10,8 +10,9 @@
 #include <vector>
 
 #include "tools/python/module/arrays.hpp"
-#include "tools/python/module/fields.hpp"
-#include "tools/python/module/tick_messages.hpp"
+#include "tools/python/module/live/fields.hpp"
+#include "tools/python/module/live/live.hpp"
+#include "tools/python/module/live/tick_messages.hpp"
 
 namespace clearance::python {
 namespace {

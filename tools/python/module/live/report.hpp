@@ -66,8 +66,6 @@ struct Report {
                                client::PartnerState partner, std::shared_ptr<const Names> names,
                                const Beside& beside);
 
-void add_report_class(py::module_& module);
-
 // The Python value of ReportError.
 [[nodiscard]] py::object error_of(ReportError error);
 

@@ -10,10 +10,10 @@
 
 #include "config/cell/shares.hpp"
 #include "tools/python/module/arrays.hpp"
-#include "tools/python/module/connection.hpp"
-#include "tools/python/module/module.hpp"
-#include "tools/python/module/report.hpp"
-#include "tools/python/module/tick_messages.hpp"
+#include "tools/python/module/live/connection.hpp"
+#include "tools/python/module/live/live.hpp"
+#include "tools/python/module/live/report.hpp"
+#include "tools/python/module/live/tick_messages.hpp"
 
 namespace clearance::python {
 namespace {

@@ -1,9 +1,9 @@
-#include "tools/python/module/tick_messages.hpp"
+#include "tools/python/module/live/tick_messages.hpp"
 
 #include <algorithm>
 #include <limits>
 
-#include "tools/python/module/fields.hpp"
+#include "tools/python/module/live/fields.hpp"
 
 namespace clearance::python {
 GradientArrays gradient_arrays(const clearance_msg_Gradients& message,

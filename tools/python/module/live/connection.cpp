@@ -1,5 +1,5 @@
 // clearance.Connection: monitor/client/client.hpp.
-#include "tools/python/module/connection.hpp"
+#include "tools/python/module/live/connection.hpp"
 
 #include <fmt/format.h>
 #include <pybind11/stl.h>
@@ -9,7 +9,7 @@
 #include "config/cell/share_topics.hpp"
 #include "config/cell/shares.hpp"
 #include "tools/python/module/cell.hpp"
-#include "tools/python/module/module.hpp"
+#include "tools/python/module/live/live.hpp"
 
 namespace clearance::python {
 

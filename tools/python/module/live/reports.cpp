@@ -9,10 +9,10 @@
 #include <utility>
 
 #include "monitor/client/client.hpp"
-#include "tools/python/module/connection.hpp"
-#include "tools/python/module/module.hpp"
-#include "tools/python/module/report.hpp"
-#include "tools/python/module/tick_messages.hpp"
+#include "tools/python/module/live/connection.hpp"
+#include "tools/python/module/live/live.hpp"
+#include "tools/python/module/live/report.hpp"
+#include "tools/python/module/live/tick_messages.hpp"
 
 namespace clearance::python {
 namespace {
@@ -139,12 +139,6 @@ class Reports : public Live<ReportParts> {
 }  // namespace
 
 void add_reports(py::module_& module) {
-  py::register_exception<DdsError>(module, "DdsError", PyExc_RuntimeError).doc() =
-      "DDS refused something: the text says what was attempted, where, and the reason.";
-  py::register_exception<ClosedError>(module, "ClosedError", PyExc_RuntimeError).doc() =
-      "The object was closed.";
-  add_connection(module);
-  add_report_class(module);
   py::class_<Reports> reports(module, "Reports", R"(The reports of a running daemon.
 
 Iterating waits for each in order, without an end. Reports come once the names of their scene have come.
