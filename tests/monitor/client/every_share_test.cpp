@@ -38,8 +38,8 @@ Cell cell_of_three_shares() {
 
 struct Said {
   ShareState state = ShareState::kWhole;
-  std::optional<std::array<double, 2>> least;  // bounds of the pair with the least upper one
-  double others = -kFarOff;                    // no other pair is nearer
+  std::optional<std::array<double, 2>> least = {};  // bounds of the pair with the least upper one
+  double others = -kFarOff;                         // no other pair is nearer
   bool is_certified = false;
 };
 constexpr std::array kSaid = {Said{.least = {{0.2, 0.2}}, .others = 0.2, .is_certified = true},
