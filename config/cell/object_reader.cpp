@@ -338,7 +338,7 @@ std::string note_on_sources(const ObjectList& list, std::span<const Robot> robot
   constexpr std::size_t kHeard = kMaxNamedSources + 1;
   if (sources.size() <= kHeard) return {};
   return fmt::format(
-      "the cell can need {} sources, but {} are heard at a time: the others will be refused "
+      "the cell can need {} sources, but {} are heard at a time: the others are refused "
       "([source-refused]). Let robots share topics of joint states, or divide the cell into shares",
       sources.size(), kHeard);
 }

@@ -1,5 +1,4 @@
-// Limits the lines about one kind of refusal: requests and messages that are refused may come at
-// any rate, and must not fill the log.
+// Limits the log lines about one kind of refusal, since refusals may come at any rate.
 #pragma once
 
 #include <cstdint>
@@ -16,11 +15,11 @@ class LineLimit {
  public:
   static constexpr std::uint64_t kLinesASecond = 5;
 
-  // `left_out` is the line that counts those that were left out.
+  // `left_out` is the log line that states how many lines were left out.
   explicit LineLimit(const LogLine<lines::Text>& left_out) : line_(left_out) {}
 
-  // Returns whether one more line may be logged, by CLOCK_MONOTONIC. The first one of a second
-  // comes after the count of an earlier second.
+  // Returns whether one more line may be logged; `now_ns` is CLOCK_MONOTONIC. The first call in a
+  // new second logs how many lines were left out before.
   [[nodiscard]] bool admits(std::int64_t now_ns) {
     const std::lock_guard lock(mutex_);
     const std::int64_t second = now_ns / 1'000'000'000;

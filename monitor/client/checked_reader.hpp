@@ -1,5 +1,5 @@
 // Reads a topic that the daemon does not write in each tick: catalogue, zones, health, results.
-// Like reports, only messages are handed out that are as the daemon wrote them (END_TO_END.md).
+// A message that is not as its daemon wrote it is counted and not handed out (END_TO_END.md).
 #pragma once
 
 #include <dds/dds.h>
@@ -26,7 +26,7 @@ struct RefusedMessages {
 
 class CheckedReader {
  public:
-  // The entity is the participant's. `of_several`: it keeps the values of several daemons.
+  // The participant owns the DDS reader. With `of_several`, it keeps the values of several daemons.
   CheckedReader(Participant& participant, TopicKind kind, const std::string& topic,
                 bool of_several = false);
 
@@ -48,7 +48,7 @@ class CheckedReader {
   RefusedMessages refused_;
 };
 
-// "3 messages of clearance/zones were refused, the last one as corrupt; ..." Empty: none was.
+// Returns "3 messages of clearance/zones were refused, the last one as corrupt; ...", or nothing.
 [[nodiscard]] std::string text_of(const std::vector<RefusedMessages>& topics);
 
 }  // namespace client

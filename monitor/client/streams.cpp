@@ -264,7 +264,8 @@ const clearance_msg_PairGradient* Pair::in(const clearance_msg_Gradients& gradie
 Health::Health(Connection& connection)
     : reader_(connection.participant(), TopicKind::kHealth, connection.topics().health) {}
 
-// A message that is not of the leader counts when none of a leader has come for two periods.
+// A follower's message counts if no leader's has come for 2.5 periods, or if the message in use is
+// of the same daemon.
 void Health::update() {
   while (reader_.take(*scratch_)) {
     const std::int64_t silent_ns = scratch_->period_ns / 2 * 5;

@@ -25,10 +25,11 @@ RelativePose moved_to(const Vec3& p, const RelativePose& pose) noexcept {
 // are within `radius` of it.
 void sample(const ConvexBody& part, const ConvexBody& point, const RelativePose& at, double radius,
             double depth, BlindShell& blind) noexcept {
-  if (std::isnan(depth) || blind.elements % sampled_stride(blind.elements) != 3) return;
+  const std::size_t stride = sampled_stride(blind.elements);
+  if (std::isnan(depth) || blind.elements % stride != 3) return;
   TrackingState features;
-  ++blind.sampled;
-  if (!(distance(part, point, at, features).upper >= -(depth + radius))) ++blind.deep;
+  blind.sampled += stride;
+  if (!(distance(part, point, at, features).upper >= -(depth + radius))) blind.deep += stride;
 }
 
 class SlabShelf {

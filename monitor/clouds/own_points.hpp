@@ -19,8 +19,8 @@ struct BlindShell {
   std::size_t elements = 0;
   double thickness = 0.0;  // m: no point of a shelved element is farther from the part
   double shell = 0.0;      // m: the widest that shelved one
-  // Of every sampled_stride()-th shelved element: their number, and the number of those that are
-  // deep, so that the sensor has seen through the part's surface (CentreLimit::depth).
+  // The elements for which samples stand, and those of them for which the sample is deep: the
+  // sensor has seen through the part's surface there (CentreLimit::depth).
   std::size_t sampled = 0, deep = 0;
   // A box of the cloud's frame that contains the shelved elements, m; low > high: none were.
   Vec3 low = Vec3::Constant(kInfinity), high = Vec3::Constant(-kInfinity);
@@ -52,9 +52,9 @@ struct CentreLimit {
   double depth = std::numeric_limits<double>::quiet_NaN();
 };
 
-// A depth costs up to a hundred queries, and a body that fills the picture has a thousand samples.
-// A small one has a sample of each eight elements. The first elements of a part tend to be at its
-// edge, where nothing is deep.
+// A depth costs up to a hundred queries, so the samples thin out after the first elements of a
+// part: a sample stands for so many elements. Some of a small part are needed, since those at its
+// edge are never deep.
 [[nodiscard]] constexpr std::size_t sampled_stride(std::size_t elements) noexcept {
   return elements < 512 ? 8 : 256;
 }

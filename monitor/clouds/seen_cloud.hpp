@@ -49,13 +49,13 @@ class SeenCloud {
   [[nodiscard]] std::size_t size() const noexcept {
     return depth() != nullptr ? depth()->size() : points()->size();
   }
-  // False: nothing shows that the place is clear. An empty cloud shows it if what was left out was
-  // enough of bodies that the caller knows, at their places.
+  // Returns whether the frame shows that a place without elements is clear. An empty cloud shows it
+  // only if the caller has noted enough of known bodies at their places.
   [[nodiscard]] bool shows_place() const noexcept { return size() > 0 || shows_known_; }
   void note_known(bool shows_known) noexcept { shows_known_ = shows_known; }
 
-  // `body` is scratch memory of the caller. Without elements, the answer is kEmpty, and only what
-  // was left out bounds `lower`. Elements that were cropped count: `lower` is a bound of
+  // `body` is scratch memory of the caller. Without elements, the answer is kEmpty, and only crop
+  // and thick shells bound `lower`. Elements that were cropped count: `lower` is a bound of
   // their distance, too. So do those that were left out in a shell which is thicker than trusted,
   // unless that is the shell of `object`.
   [[nodiscard]] NearestElement nearest(const ConvexBody& part, const RelativePose& part_from_cloud,

@@ -87,7 +87,7 @@ void MoveItPort::coming(std::uint64_t revision, std::uint64_t command) {
   if (sharing_) note(command != 0 ? command : current_, revision);
 }
 
-// A refused one may have been told of before it was to be in force.
+// The partner may have been told of a command that is then refused: that entry is removed.
 void MoveItPort::ended(std::uint64_t command, const CommandResult& result) {
   if (!sharing_) return;
   if (result.done()) return note(command, sharing_->revision());

@@ -41,9 +41,9 @@ class MoveItPort {
   void close();
 
   // The next five functions do nothing unless the messages are shared. The scene thread calls the
-  // first three: coming() when a scene of this revision comes into force, by this command of a
-  // client or by none (0), and ended() when that command is answered. is_done() returns whether
-  // the change that it asks for is in force: the leader before has done it.
+  // first three. coming() announces a revision that comes into force, by this command of a client,
+  // or by none (0). ended() follows when the command is answered. is_done() returns whether the
+  // former leader has done the command, and its change is in force here.
   void coming(std::uint64_t revision, std::uint64_t command);
   void ended(std::uint64_t command, const CommandResult& result);
   [[nodiscard]] bool is_done(std::uint64_t command);

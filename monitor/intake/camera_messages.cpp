@@ -105,8 +105,8 @@ constexpr auto kWords = [] {
       {kCannotBuild, "too wide, or too many points",
        "its picture is too wide, or has more points within the range than the cell states"},
       {kNothingSeen, "nothing seen but the robot",
-       "nothing is seen within the range but the robot itself, nor do known bodies at their places "
-       "fill a quarter of the picture: that is not clear"},
+       "nothing is seen within the range but the robot itself. Known bodies at their places do not "
+       "fill a quarter of the picture, so nothing shows that the place is clear"},
       {kBeforeJoints, "before the first joints",
        "joints were first heard after its stamp: the robot's own image is not left out"},
       {kNotOrganised, "not organised", "it has no rows, so its points have no neighbours"},

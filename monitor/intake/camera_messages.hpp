@@ -49,7 +49,7 @@ enum class FrameFault : std::uint8_t {
   kNoPlace,  // no transform leads from its frame to the cell, or where it was mounted is unknown
   kLateTransforms,  // no transform at or after its stamp has come in time, and no speed is stated
   kCannotBuild,     // a picture too wide, or more points within the range than the cell states
-  kNothingSeen,     // nothing within the range but the robot, and no known body at its place
+  kNothingSeen,     // nothing within the range but the robot, and too little of known bodies
   kBeforeJoints,    // joints were first heard after the stamp: the robot's image is taken for an
                     // obstacle
   kNotOrganised,    // points in one row, where the cell says that their neighbours are known

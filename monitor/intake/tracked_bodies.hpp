@@ -20,7 +20,7 @@ namespace clearance {
 class TrackedBodies final : public Decoder {
  public:
   static constexpr std::int64_t kSilentNs = 1'000'000'000;
-  // Is the time without too many bodies after which they are told of again.
+  // After this time without too many bodies, the next excess is logged again.
   static constexpr std::int64_t kNewAgainNs = 10 * kSilentNs;
 
   // Without `use`, no topic is wanted.

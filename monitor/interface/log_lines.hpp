@@ -379,7 +379,7 @@ inline constexpr LogLine<Text, std::int64_t> kPartnerClock{
     "NTP)"};
 inline constexpr LogLine<Text, Text, Count> kPartnerNoticeRefused{
     "partner-notice-refused", kWarn,
-    "{} of partner '{}' with a time that no leader can have: not used ({} so far)"};
+    "refused {} of partner '{}': no leader can have their times ({} so far)"};
 inline constexpr LogLine<Text, Text, Text> kPartnerOtherBuild{
     "partner-other-build", kError,
     "partner '{}' is another build, {}, than this one, {}: neither can take over the other's "

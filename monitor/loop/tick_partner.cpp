@@ -95,8 +95,9 @@ void TickPartner::listen() noexcept {
   }
 }
 
-// Notices may be forged. A tick is due soon, and later than the one before but for the errors of
-// two clocks, and told times go on without a jump. After a join, the first notice tells both.
+// Notices may be forged. A tick is due in two periods at most, and at most two before the last one.
+// Its told time leaps by at most kLargestStepNs. The first notice after a join may state any of the
+// last two.
 bool TickPartner::is_possible(const TickNotice& notice) noexcept {
   const std::int64_t slack = 2 * options_.period_ns;
   bool is = less(notice.due_ns, clock_.monotonic_ns()) <= slack;

@@ -71,7 +71,7 @@ class TickPartner final : public PoseSource, public TickPace {
   [[nodiscard]] bool wants_state() const noexcept { return wants_state_.load(); }
   // The lineage that a successor takes over, from Successor::begin() to its end; otherwise 0.
   [[nodiscard]] std::uint64_t becoming() const noexcept { return shown_becoming_.load(); }
-  // The notices that no leader can have written.
+  // The number of notices that no leader can have written.
   [[nodiscard]] std::uint64_t refused_notices() const noexcept { return refused_notices_.load(); }
   // When this daemon took the lead the last time, CLOCK_MONOTONIC.
   [[nodiscard]] std::int64_t leads_since_ns() const noexcept { return leads_since_ns_.load(); }
@@ -98,7 +98,7 @@ class TickPartner final : public PoseSource, public TickPace {
   static constexpr std::size_t kKnown = 256;  // notices: those of a quarter of a second
 
   void listen() noexcept;
-  // False: it is counted as refused.
+  // Returns false, and counts the notice as refused, if no leader can have written it.
   [[nodiscard]] bool is_possible(const TickNotice& notice) noexcept;
   // The lead of the leader's time over this daemon's own, at that tick.
   [[nodiscard]] std::int64_t ahead_of_own(const TickNotice& notice) noexcept;
@@ -155,7 +155,7 @@ class TickPartner final : public PoseSource, public TickPace {
   std::vector<TickNotice> known_;  // by cycle
   std::uint64_t newest_cycle_ = 0, newest_daemon_ = 0, newest_revision_ = 0, newest_term_ = 0;
   std::uint64_t newest_becoming_ = 0;
-  std::int64_t newest_due_ns_ = 0, heard_ns_ = 0;  // the latter 0: never
+  std::int64_t newest_due_ns_ = 0, heard_ns_ = 0;  // heard_ns_ is 0 before the first
 
   SpscRing<TickNotice> heard_, notices_;
   SpscRing<TickTag> tags_;

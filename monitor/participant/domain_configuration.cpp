@@ -7,10 +7,12 @@
 #include <net/if.h>
 #include <unistd.h>
 
+#include <charconv>
 #include <cstdlib>
 #include <fstream>
 #include <iterator>
 #include <string_view>
+#include <system_error>
 #include <vector>
 
 namespace clearance {
@@ -117,17 +119,24 @@ std::string own_settings() {
   return uri == nullptr ? "" : uri;
 }
 
-// True if those settings choose the cards: Cyclone adds up the cards of all settings, and refuses
-// one that is named twice. A comma ends the name of a file, and more settings may follow it.
-bool choose_cards(const std::string& settings) {
+// Returns those settings with the text of the files that they name. A comma ends the name of a
+// file, and more settings may follow it.
+std::string own_settings_with_files() {
   constexpr std::string_view kFile = "file://";
+  const std::string settings = own_settings();
   std::string text = settings;
   for (std::size_t at = 0; (at = settings.find(kFile, at)) != std::string::npos;) {
     at += kFile.size();
     std::ifstream file(settings.substr(at, settings.find(',', at) - at));
     text.append(std::istreambuf_iterator<char>(file), {});
   }
-  return text.find("NetworkInterface") != std::string::npos;
+  return text;
+}
+
+// True if those settings choose the cards: Cyclone adds up the cards of all settings, and refuses
+// one that is named twice.
+bool choose_cards() {
+  return own_settings_with_files().find("NetworkInterface") != std::string::npos;
 }
 
 // Cyclone's default of 14,720 B cuts a batch of 100 poses in two on loopback, and needs ten IP
@@ -173,7 +182,7 @@ std::string domain_configuration(const DdsOptions& options) {
   const DatagramSizes sizes = datagram_sizes(options);
   const std::string settings = own_settings();
   Network network = network_of(options);
-  if (choose_cards(settings)) network.interfaces.clear();
+  if (choose_cards()) network.interfaces.clear();
   std::string xml = fmt::format(
       "<CycloneDDS><Domain id=\"any\"><General>{}"
       "<MaxMessageSize>{}B</MaxMessageSize><FragmentSize>{}B</FragmentSize></General>"
@@ -186,6 +195,18 @@ std::string domain_configuration(const DdsOptions& options) {
 
 std::string describe_partition(const std::string& partition) {
   return partition.empty() ? "default partition" : fmt::format("partition {}", partition);
+}
+
+std::uint32_t domain_on_the_wire(std::uint32_t domain) {
+  constexpr std::string_view kElement = "<ExternalDomainId>";
+  const std::string settings = own_settings_with_files();
+  const std::size_t at = settings.rfind(kElement);
+  if (at == std::string::npos) return domain;
+  const char* const text = settings.data() + at + kElement.size();
+  std::uint32_t stated = 0;
+  return std::from_chars(text, settings.data() + settings.size(), stated).ec == std::errc{}
+             ? stated
+             : domain;
 }
 
 std::string where_joined(const DdsOptions& options, const Domain& domain) {

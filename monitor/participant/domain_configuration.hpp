@@ -16,6 +16,10 @@ namespace clearance {
 // counts and means nothing.
 [[nodiscard]] std::string domain_configuration(const DdsOptions& options);
 
+// The number of the domain in messages: the one that this program calls `domain`, unless
+// CYCLONEDDS_URI has an ExternalDomainId.
+[[nodiscard]] std::uint32_t domain_on_the_wire(std::uint32_t domain);
+
 // "domain 7, partition demo, interface lo, datagrams of up to 65000 B"
 [[nodiscard]] std::string where_joined(const DdsOptions& options, const Domain& domain);
 // Says how to start another program on the same network: the CYCLONEDDS_URI to copy.

@@ -208,6 +208,7 @@ void Participant::make_publisher_and_subscriber(const std::string& partition) {
   partition_ = partition;
   if (is_secured(participant_)) where_ += ", with DDS Security";
   check_dds(dds_get_domainid(participant_, &domain_id_), "asking for the domain");
+  domain_id_ = domain_on_the_wire(domain_id_);
   const Qos qos = partition_qos(partition);
   publisher_ =
       check_dds(dds_create_publisher(participant_, qos.get(), nullptr), "making a publisher");

@@ -30,9 +30,9 @@ struct GivenCommand {
   // The daemon's own: `client` is not checked, and files may lie anywhere.
   bool is_own = false;
   AnswerCommand answer = {};
-  std::uint64_t identity = 0;  // of the message: a hash of all of it; 0: it is none
-  // Asked when its turn comes: the partner that led before has done this command, and the change is
-  // in force here. It is then answered, and not done again. May be empty.
+  std::uint64_t identity = 0;  // the hash of the client's message; 0: the command came in none
+  // Is called when the command's turn comes. Returns true if the former leader has done the command
+  // and its change is in force here: the command is then only answered. May be empty.
   std::function<bool()> is_done = {};
 };
 

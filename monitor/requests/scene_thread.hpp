@@ -31,7 +31,7 @@ class SceneThread {
   // or after end(). Otherwise the answer comes, unless the program ends.
   [[nodiscard]] bool put(SceneTask task) { return queue_.put(std::move(task)); }
 
-  // For this thread: the identity of the given command that it does; 0: it does none.
+  // Only the scene thread may call this. Returns the identity of the command in progress; 0: none.
   [[nodiscard]] std::uint64_t in_hand() const noexcept { return in_hand_; }
 
   // Once `loop_ended` is set: drops what waits, and waits for the change that is in progress.

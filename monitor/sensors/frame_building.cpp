@@ -283,7 +283,7 @@ void Sensors::leave_out(State& state, const Waiting& frame, const PastPose& plac
     state.status.hidden = state.persistence->hide(
         cloud, place.world_from_body, place.error(sensor.extent()), frame.stamp_ns, unseen);
     for (DepthCloud& each : unseen) each.refit();
-    if (state.status.hidden > 0) cloud.note_known(false);  // it is no speckle for certain
+    if (state.status.hidden > 0) cloud.note_known(false);  // they may be more than speckle
   }
   own_image_.find_unseen(sensor, place, postures_, cloud, body_);
   if (DepthCloud* const depth = cloud.depth()) {

@@ -60,7 +60,7 @@ bool OwnImage::hang_together(std::uint32_t group, std::uint32_t other) const noe
 // An element that is near both a link and a known body is the link's: it shows nothing of the body.
 std::size_t OwnImage::leave_out(const Sensor& sensor, bool along_ray, const PastPose& place,
                                 const PostureHistory& postures, SeenCloud& cloud, SlabBody& body) {
-  Taking taking{
+  OfFrame frame{
       .sensor = sensor,
       .place = place,
       .postures = postures,
@@ -86,7 +86,7 @@ std::size_t OwnImage::leave_out(const Sensor& sensor, bool along_ray, const Past
       HiddenNear& near = cloud.hidden()[i];
       near.object = bodies_[i].object;
       if (!links && !sensor.knows) continue;
-      leave_out(bodies_[i], taking, near);
+      leave_out(bodies_[i], frame, near);
       if (links) continue;
       known += near.shell.elements;
       is_elsewhere |= near.shell.sampled > 0 && 2 * near.shell.deep >= near.shell.sampled;
@@ -99,14 +99,14 @@ std::size_t OwnImage::leave_out(const Sensor& sensor, bool along_ray, const Past
   return is_elsewhere ? 0 : known;
 }
 
-void OwnImage::leave_out(const Body& each, Taking& taking, HiddenNear& near) {
-  const Sensor& sensor = taking.sensor;
-  const PastPose past = place_of(each, taking.postures);
+void OwnImage::leave_out(const Body& each, OfFrame& frame, HiddenNear& near) {
+  const Sensor& sensor = frame.sensor;
+  const PastPose past = place_of(each, frame.postures);
   if (!past.known) return;
   Unseen* const places = of_sensor(sensor);
-  CentreLimit limit = taking.limit;
+  CentreLimit limit = frame.limit;
   for (const Part& part : scene_.objects[each.object].parts) {
-    const double error = taking.place.error(sensor.extent()) + error_of(past, part) +
+    const double error = frame.place.error(sensor.extent()) + error_of(past, part) +
                          errors_.largest(each.object, sensor.object);
     const Pose world_from_part = compose(past.world_from_body, part.object_from_part);
     const double shell = std::min(sensor.most_shell, rounded_up(sensor.own_shell + error));
@@ -114,13 +114,13 @@ void OwnImage::leave_out(const Body& each, Taking& taking, HiddenNear& near) {
     limit.most = sensor.by_neighbours ? shell : sensor.most_shell;
     if (each.robot == kNone) limit.depth = scene_.objects[each.object].mesh_error;
     const RelativePose part_from_cloud =
-        relative_pose(world_from_part, taking.place.world_from_body);
+        relative_pose(world_from_part, frame.place.world_from_body);
     const BlindShell blind =
-        taking.cloud.shelve(part.shape, part_from_cloud, shell, limit, taking.body);
+        frame.cloud.shelve(part.shape, part_from_cloud, shell, limit, frame.body);
     for (std::uint32_t group = 0; places != nullptr && group < places->others.size(); ++group) {
       if (!hang_together(group, each.group))
         static_cast<void>(shelve_own_points(part.shape, part_from_cloud, shell,
-                                            places->others[group], taking.body));
+                                            places->others[group], frame.body));
     }
     near.shell.add(blind);
     if (blind.elements > 0)

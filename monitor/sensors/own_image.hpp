@@ -62,8 +62,8 @@ class OwnImage {
     bool is_built = false;
   };
 
-  // What a frame is taken apart with, by all bodies.
-  struct Taking {
+  // The arguments that are the same for all bodies of a frame.
+  struct OfFrame {
     const Sensor& sensor;
     const PastPose& place;
     const PostureHistory& postures;
@@ -71,7 +71,7 @@ class OwnImage {
     SlabBody& body;
     CentreLimit limit;
   };
-  void leave_out(const Body& each, Taking& taking, HiddenNear& near);
+  void leave_out(const Body& each, OfFrame& frame, HiddenNear& near);
   [[nodiscard]] static PastPose place_of(const Body& body, const PostureHistory& postures) noexcept;
   // True if one of the robots stands on the other one, or on what that one carries.
   [[nodiscard]] bool hang_together(std::uint32_t group, std::uint32_t other) const noexcept;

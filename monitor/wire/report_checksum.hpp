@@ -37,7 +37,7 @@ class AddToSum {
            std::is_enum_v<Value>) void add(const Value& value) const noexcept {
     sum_.add(value);
   }
-  // A text counts up to its end, with that. A null pointer stands for an empty one, as on the wire.
+  // A text counts up to its first zero, and the zero counts. A null pointer is an empty text.
   template <std::size_t N>
   void add(const char (&text)[N]) const noexcept {
     for (std::size_t i = 0; i < N; ++i) {
@@ -152,7 +152,7 @@ template <class Message>
   return crc_of(message) == message.delivery_checksum;
 }
 
-// Why the message is not what a daemon wrote for readers of this address; kGood: it is.
+// Returns kGood for a message as a daemon wrote it for this address, and otherwise the error.
 template <class Message>
 [[nodiscard]] ReportError delivery_error(const Message& message, std::uint64_t address) noexcept {
   using enum ReportError;

@@ -30,18 +30,26 @@ std::string descending_log() {
   return log;
 }
 
-// Reports are sealed anew for the place where they are published.
-std::string text_of(const Kept& message) {
-  const auto text = [](std::span<const std::byte> bytes) {
-    return std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-  };
-  if (message.kind != TopicKind::kDistances) return text(message.cdr);
+std::string text_of(std::span<const std::byte> bytes) {
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+// Without what states where the message was written.
+template <class Message>
+std::string unsealed(const Kept& message) {
   CdrDecoder decoder;
   CdrEncoder encoder;
-  Sample<clearance_msg_Distances> report;
-  EXPECT_TRUE(decoder.decode(message.cdr, report));
-  report->address = report->delivery_checksum = 0;
-  return text(encoder.encode(*report));
+  Sample<Message> sample;
+  EXPECT_TRUE(decoder.decode(message.cdr, sample));
+  sample->address = sample->delivery_checksum = 0;
+  return text_of(encoder.encode(*sample));
+}
+
+// Reports and catalogues are sealed anew for the place where they are published.
+std::string text_of(const Kept& message) {
+  if (message.kind == TopicKind::kDistances) return unsealed<clearance_msg_Distances>(message);
+  if (message.kind == TopicKind::kCatalogue) return unsealed<clearance_msg_Catalogue>(message);
+  return text_of(std::span<const std::byte>(message.cdr));
 }
 
 class RecordReplay : public RunsPrograms {

@@ -151,7 +151,7 @@ void LiveSource::join(TopicKind kind) {
   reader = participant_.reader(kind, topics_.*topic(kind).name, depth_of(kind));
 }
 
-// The next viewer must not be shown an old report. Whoever closes the page has seen its faults.
+// The next viewer must not be shown an old report. The last one to close the page acknowledges.
 void LiveSource::leave(Server& server) {
   for (const TopicKind kind : kOnDemand) {
     dds_entity_t& reader = readers_[index(kind)];
@@ -356,8 +356,8 @@ void LiveSource::tell_of_the_daemon(Server& server, std::int64_t now_ns, std::in
     text = fmt::format("{} daemons publish here: figures are mixed", writers_alive(reader));
   } else if (error != ReportError::kGood) {
     text = fmt::format("no report may be relied on: {}{}", client::name(error),
-                       judge_.is_held() ? ", twice within an hour; close the page for 3 s when "
-                                          "you have looked at the cause"
+                       judge_.is_held() ? ", twice within an hour; when the cause is found, "
+                                          "close this page in all browsers for 3 s"
                                         : "");
   } else if (frame_->revision() != 0 && frame_->revision() != cell_->scene.revision) {
     text = reading_.valid() ? "the daemon has changed its cell, which is being read"

@@ -32,16 +32,15 @@ SuiteCase empty_case(const std::string& kind, double separation, Body a, Body b)
   return {kind, separation, {std::move(a), std::move(b), {}}, {}, size};
 }
 
-// From rows of a rotation matrix that is rounded.
+// Makes a pose from the rounded rows of a rotation matrix.
 Pose reported_pose(const Vec3& position, const Vec3& x, const Vec3& y, const Vec3& z) {
   Mat3 rows;
   rows << x.transpose(), y.transpose(), z.transpose();
   return {position, Eigen::Quaterniond(rows).normalized()};
 }
 
-// Pairs for which users of a library reported a wrong answer, by its tracker: sizes in m, poses in
-// the world. Where two touch, they begin
-// 0.1 m apart, since a touching pair has no certain normal.
+// Pairs from reports of wrong answers in the tracker of a library: sizes in m, poses in the world.
+// A pair that touches begins 0.1 m apart, since it has no certain normal.
 Trajectory fcl_493() {
   const Vec3 x{0.94096063217417758, 0.29296840037289501, 0.16959541586174812},
       y{-0.23569836841299879, 0.92661523595848427, -0.29296840037289507},

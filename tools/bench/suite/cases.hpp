@@ -5,8 +5,8 @@
 //           distance becomes the one asked for. A translation along the normal keeps both support
 //           points, so it changes the distance by exactly its length. Depths are known so
 //           for spheres and capsules, whose axes stay disjoint.
-//   reported  A pair for which a library's tracker has a wrong answer, its number in the name; it
-//           rides like the others.
+//   reported  A pair for which users reported a wrong answer of a library; the name of the case
+//           has the number of the report. The motion is made as for `riding`.
 //   level   Boxes of one orientation: the distances along the three axes give the distance.
 //           Spinning boxes and cans stay above the top face, so the vertical distance counts.
 //   grazing A box above a larger one, tilted by 0.1 to 1e-12 rad: the height of its lowest vertex.

@@ -133,6 +133,6 @@ else:
         if name not in _live:
             raise AttributeError(f"module 'clearance' has no attribute '{name}'")
         raise ImportError(
-            f"clearance.{name} talks to a daemon over DDS, which this wheel does without: install the package "
-            "python3-clearance, or 'pip install tools/python' in a source tree"
+            f"clearance.{name} talks to a daemon over DDS, and this wheel has no DDS: install the package "
+            "python3-clearance, or run 'pip install tools/python' in a source tree"
         )

@@ -11,7 +11,7 @@ void add_batch(pybind11::module_& module);
 void add_cell(pybind11::module_& module);
 void add_replay(pybind11::module_& module);
 void add_answers(pybind11::module_& module);
-// What talks over DDS, where CLEARANCE_PYTHON_DDS is on.
+// Adds the classes that talk over DDS, if CLEARANCE_PYTHON_DDS is on.
 void add_live(pybind11::module_& module);
 
 }  // namespace clearance::python

@@ -187,8 +187,9 @@ Raises ValueError and DdsError.)")
             return client::text_of(
                 {parts->catalogue.refused(), parts->zones.refused(), parts->health.refused()});
           },
-          "Which messages of catalogue, zones and health were not as the daemon wrote them, for a "
-          "person; or empty.")
+          "A sentence that counts the refused messages of catalogue, zones and health; empty if "
+          "none "
+          "was refused. A message is refused if it is not as the daemon wrote it.")
       .def_property_readonly("zones", &Reports::zones,
                              R"(The last known state of each zone: a dict of records by name.
 
