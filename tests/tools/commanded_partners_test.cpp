@@ -163,7 +163,8 @@ TEST_F(CommandedPartners, AChangeThatAClientWasToldIsDoneOutlivesTheLeader) {
   EXPECT_TRUE(read_until([&] { return reports->scene_revision == done.back(); })) << logs();
 }
 
-// As if its first answer had been lost. Done a second time, it would be refused: there is a crate.
+// The client forgets the first answer, as if it was lost. A second crate of that name would be
+// refused.
 TEST_F(CommandedPartners, ACommandThatIsSentAgainToTheOtherOneIsAnsweredAndNotDoneAgain) {
   start_both();
   test::CommandingClient client(connection.participant(), "planner");

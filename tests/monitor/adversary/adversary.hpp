@@ -40,7 +40,7 @@ class Adversary {
 
   // Moves all objects, sends their poses to the monitor, and returns its report.
   const Report& tick(Monitor& monitor);
-  // From now on all objects rest, and every pose comes.
+  // Lets all objects rest, and every pose come, until the end of the run.
   void rest() noexcept { rests_ = true; }
 
   // The pose that the monitor's bounds of this tick refer to.

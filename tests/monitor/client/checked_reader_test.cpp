@@ -137,7 +137,7 @@ TEST(CheckedReader, HandsOutNoStateOfAZoneThatIsNotAsItsDaemonWroteItAndCountsIt
   EXPECT_TRUE(eventually([&] { return zones.update(), !zones.states().at(0).active; }));
 }
 
-// What was known before stays. The request is sent again, so a good result follows.
+// The client keeps what it had before. It sends the request again, so a good result follows.
 TEST(CheckedReader, HandsOutNoCatalogueHealthOrResultThatIsNotAsItsDaemonWroteIt) {
   const DdsOptions dds = test::own_dds();
   Participant daemon(dds);

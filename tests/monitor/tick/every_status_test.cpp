@@ -19,7 +19,7 @@ namespace {
 constexpr double kRadius = 0.1, kEnter = 0.3, kLeave = 0.4, kMaxSpeed = 1.0;  // m, m/s
 constexpr std::int64_t kLongNs = 40 * test::kTick;  // beyond the age limit
 
-// What is known of a ball in the end, and its distance from the post, m.
+// The last knowledge of a ball, and its distance from the post, m.
 struct Known {
   PairStatus status;
   double distance;
