@@ -17,7 +17,7 @@ namespace {
 
 const std::string kPeopleCell =
     "name: people\nunits: {length: m, angle: rad}\nrate_hz: 200\n"
-    "ros2: {world_frame: map, tracked_bodies: true}\nrobots:\n"
+    "ros2: {world_frame: map, tracked_bodies: /hall/people}\nrobots:\n"
     "  - {name: one, person: {stature: 1.75, error: 0.1}, groups: [people], age_limit_ms: 500}\n"
     "  - {name: two, person: {stature: 1.75, error: 0.1}, groups: [people], age_limit_ms: 500}\n"
     "objects:\n  - {name: post, fixed: true, pose: {xyz: [3, 0, 1]}, sphere: {radius: 0.1}}\n"
@@ -33,7 +33,7 @@ class DaemonPeople : public WatchedDaemon {
   }
   void SetUp() override {
     watch(kPeopleCell);
-    tracker_.emplace(connection_, "map");
+    tracker_.emplace(connection_, "map", "/hall/people");
   }
   // Sends the list, and where each of `told` is, until both persons have these states.
   bool become(const std::vector<std::string>& listed, const std::vector<std::string>& told,

@@ -18,11 +18,12 @@ void fill(Header& header, std::int64_t stamp_ns, const std::string& frame) {
 
 }  // namespace
 
-RosTracker::RosTracker(client::Connection& connection, std::string world_frame)
+RosTracker::RosTracker(client::Connection& connection, std::string world_frame,
+                       const std::string& list_topic)
     : connection_(connection),
       world_frame_(std::move(world_frame)),
-      ids_(
-          connection.participant().ros_writer(kRosIdsList, ros_dds_name("/humans/bodies/tracked"))),
+      ids_(connection.participant().ros_writer(
+          kRosIdsList, ros_dds_name(list_topic.empty() ? "/humans/bodies/tracked" : list_topic))),
       frames_(connection.participant().ros_writer(kRosTf, ros_dds_name("/tf"))) {}
 
 RosTracker::~RosTracker() {

@@ -20,7 +20,9 @@ struct Skeleton {
 
 class RosTracker {
  public:
-  RosTracker(client::Connection& connection, std::string world_frame);
+  // `list_topic`: of the list of bodies, in ROS 2's spelling; empty: ROS4HRI's own.
+  RosTracker(client::Connection& connection, std::string world_frame,
+             const std::string& list_topic);
   ~RosTracker();
   RosTracker(const RosTracker&) = delete;
   RosTracker& operator=(const RosTracker&) = delete;

@@ -8,7 +8,7 @@
 namespace clearance {
 
 SimulatedPeople::SimulatedPeople(const Cell& cell, client::Connection& connection)
-    : tracker_(connection, cell.ros.world_frame) {
+    : tracker_(connection, cell.ros.world_frame, cell.ros.moveit.tracked_bodies) {
   const bool are_listed = !cell.ros.moveit.tracked_bodies.empty();
   for (const Robot& robot : cell.scene.robots) {
     if (!robot.person) continue;

@@ -169,7 +169,7 @@ RunResult run(const Cell& cell, client::Connection& connection, const RunOptions
   RunResult result;
   Truth truth(cell);
   Watcher watcher(connection, truth, result);
-  RosTracker tracker(connection, cell.ros.world_frame);
+  RosTracker tracker(connection, cell.ros.world_frame, cell.ros.moveit.tracked_bodies);
   client::PoseWriter arm(connection, "arm of two links");
   PersonFit fit;
   std::vector<PoseAt> poses;
