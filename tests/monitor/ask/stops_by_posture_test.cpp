@@ -18,7 +18,7 @@ namespace {
 
 using test::kStart, test::kTick;
 
-constexpr double kReaction = 0.051;               // s: stated, and a period
+constexpr double kStatedReaction = 0.051;         // s: stated, and a period
 constexpr double kShort = 0.2, kLong = 0.3;       // s: until the first joint stands, by the step
 constexpr double kBoundary = 0.5;                 // m: of both steps
 constexpr std::int64_t kApart = 100'000 * kTick;  // of postures that do not follow each other
@@ -80,10 +80,10 @@ TEST(StopsByPosture, CountWithTheLowestStepThatAStopDoesNotLeave) {
   ArmByPosture arm;
   int lower = 0, left = 0;
   for (int i = 0; i < 1'000; ++i) {
-    const bool is_lower = arm.tick() < kReaction + 0.5 * (kShort + kLong);
+    const bool is_lower = arm.tick() < kStatedReaction + 0.5 * (kShort + kLong);
     double farthest = 0.0;
     for (int k = 0; k <= 50; ++k)
-      farthest = std::max(farthest, arm.extension((kReaction + kShort) * k / 50.0));
+      farthest = std::max(farthest, arm.extension((kStatedReaction + kShort) * k / 50.0));
     const bool is_left = farthest > kBoundary;
     EXPECT_FALSE(is_lower && is_left) << "posture " << i << ", up to " << farthest << " m";
     lower += is_lower;
