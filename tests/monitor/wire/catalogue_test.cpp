@@ -15,7 +15,7 @@ using testing::ElementsAre;
 using testing::IsEmpty;
 
 template <class Sequence>
-auto list(const Sequence& sequence) {
+auto sequence_list(const Sequence& sequence) {
   return std::vector(sequence._buffer, sequence._buffer + sequence._length);
 }
 
@@ -78,8 +78,8 @@ TEST(Catalogue, NamesTheZonesWithSeparationAndTheRobotsThatStateStops) {
   for (std::uint32_t i = 0; i < 3; ++i) cell.scene.robots[i].name = std::string(1, "rst"[i]);
   cell.scene.robots[2].stopping.joints.push_back(JointStop::by_time(0.1));
   const auto catalogue = make_catalogue(cell);
-  EXPECT_THAT(list(catalogue->separated_zones), ElementsAre(1));
-  EXPECT_THAT(list(catalogue->stopping_robots), ElementsAre(2));
+  EXPECT_THAT(sequence_list(catalogue->separated_zones), ElementsAre(1));
+  EXPECT_THAT(sequence_list(catalogue->stopping_robots), ElementsAre(2));
   ASSERT_EQ(catalogue->robots._length, 3u);
   for (std::uint32_t i = 0; i < 3; ++i)
     EXPECT_EQ(cell.scene.robots[i].name, catalogue->robots._buffer[i]);
@@ -106,13 +106,13 @@ void expect_both_shares(const clearance_msg_Catalogue& catalogue) {
   EXPECT_STREQ(catalogue.shares._buffer[1].name, "odd");
   EXPECT_EQ(catalogue.shares._buffer[0].pairs_total, 2u);
   EXPECT_EQ(catalogue.shares._buffer[1].pairs_total, 1u);
-  EXPECT_THAT(list(catalogue.shares._buffer[0].zones), ElementsAre(0, 1));
-  EXPECT_THAT(list(catalogue.shares._buffer[1].zones), ElementsAre(1));
+  EXPECT_THAT(sequence_list(catalogue.shares._buffer[0].zones), ElementsAre(0, 1));
+  EXPECT_THAT(sequence_list(catalogue.shares._buffer[1].zones), ElementsAre(1));
 }
 
 std::vector<std::uint32_t> first_objects(const clearance_msg_Catalogue& catalogue) {
   std::vector<std::uint32_t> objects;
-  for (const clearance_msg_CataloguePair& pair : list(catalogue.pairs))
+  for (const clearance_msg_CataloguePair& pair : sequence_list(catalogue.pairs))
     objects.push_back(pair.object_a);
   return objects;
 }
@@ -122,9 +122,9 @@ TEST(Catalogue, OfAWholeCellInSharesSaysWhichShareHasAPair) {
     const auto catalogue = make_catalogue(cell_in_shares({}), {}, pairs);
     EXPECT_STREQ(catalogue->share, "");
     expect_both_shares(*catalogue);
-    EXPECT_THAT(list(catalogue->pair_shares), ElementsAre(0, 1, 0));
+    EXPECT_THAT(sequence_list(catalogue->pair_shares), ElementsAre(0, 1, 0));
     EXPECT_THAT(first_objects(*catalogue), ElementsAre(0, 0, 1));
-    EXPECT_THAT(list(catalogue->separated_zones), IsEmpty());
+    EXPECT_THAT(sequence_list(catalogue->separated_zones), IsEmpty());
   }
 }
 
@@ -132,14 +132,14 @@ TEST(Catalogue, OfAShareHasItsPairsOrThoseOfTheWholeCell) {
   const auto own = make_catalogue(cell_in_shares(1), {}, CataloguePairs::kOfScene);
   EXPECT_STREQ(own->share, "odd");
   expect_both_shares(*own);
-  EXPECT_THAT(list(own->pair_shares), IsEmpty()) << "its pairs are those of the share";
+  EXPECT_THAT(sequence_list(own->pair_shares), IsEmpty()) << "its pairs are those of the share";
   ASSERT_EQ(own->pairs._length, 1u);
   EXPECT_EQ(own->pairs._buffer[0].object_b, 2u);
-  EXPECT_THAT(list(own->separated_zones), ElementsAre(0)) << "those of the whole cell";
+  EXPECT_THAT(sequence_list(own->separated_zones), ElementsAre(0)) << "those of the whole cell";
 
   const auto whole = make_catalogue(cell_in_shares(1), {}, CataloguePairs::kOfWholeCell);
   EXPECT_STREQ(whole->share, "odd");
-  EXPECT_THAT(list(whole->pair_shares), ElementsAre(0, 1, 0));
+  EXPECT_THAT(sequence_list(whole->pair_shares), ElementsAre(0, 1, 0));
   EXPECT_THAT(first_objects(*whole), ElementsAre(0, 0, 1));
 }
 

@@ -16,17 +16,18 @@
 namespace clearance::test {
 namespace {
 
-struct Representation {
+struct CdrRepresentation {
   std::uint8_t id;
   bool is_big_endian;
   std::size_t alignment;  // of numbers of 8 bytes
 };
-constexpr Representation kRead[] = {{0, true, 8}, {1, false, 8}, {6, true, 4}, {7, false, 4}};
+constexpr CdrRepresentation kRepresentations[] = {
+    {0, true, 8}, {1, false, 8}, {6, true, 4}, {7, false, 4}};
 
 // Appends fields in the order in which it visits them.
-class Writer {
+class RuleEncoder {
  public:
-  explicit Writer(const Representation& as) : as_(as) {}
+  explicit RuleEncoder(const CdrRepresentation& as) : as_(as) {}
 
   template <class Value>
   void operator()(const Field&, const Value& value) {
@@ -81,15 +82,15 @@ class Writer {
     if (has_size) put(static_cast<std::uint32_t>(body_.size() - begin), begin - 4);
   }
 
-  Representation as_;
+  CdrRepresentation as_;
   std::vector<std::byte> body_;
 };
 
 template <class Message>
-std::vector<std::byte> written(const Message& message, const Representation& as) {
-  Writer writer(as);
-  for_each_field(writer, message);
-  return writer.bytes();
+std::vector<std::byte> by_rules(const Message& message, const CdrRepresentation& as) {
+  RuleEncoder encoder(as);
+  for_each_field(encoder, message);
+  return encoder.bytes();
 }
 
 template <class T>
@@ -106,11 +107,11 @@ TYPED_TEST(Representations, OfBothVersionsAndByteOrdersAreReadAlike) {
     CdrEncoder encoder;
     const auto ours = encoder.encode(*sample);
     const std::vector<std::byte> expected(ours.begin(), ours.end());
-    EXPECT_EQ(written(*sample, kRead[1]), expected) << "as we write";
-    for (const Representation& each : kRead) {
+    EXPECT_EQ(by_rules(*sample, kRepresentations[1]), expected) << "as we write";
+    for (const CdrRepresentation& each : kRepresentations) {
       // Bytes of Cyclone's reader are checked, and are not swapped.
       for (const CdrBytes origin : {CdrBytes::kUnchecked, CdrBytes::kOfReader}) {
-        ASSERT_TRUE(decoder.decode(written(*sample, each), came, origin)) << int{each.id};
+        ASSERT_TRUE(decoder.decode(by_rules(*sample, each), came, origin)) << int{each.id};
         const auto again = encoder.encode(*came);
         EXPECT_TRUE(std::ranges::equal(again, expected)) << int{each.id};
       }
@@ -120,11 +121,13 @@ TYPED_TEST(Representations, OfBothVersionsAndByteOrdersAreReadAlike) {
 
 // Lists of parameters and delimited types, for example.
 TEST(Cdr, OfAnyOtherRepresentationIsRefused) {
-  std::vector<std::byte> bytes = written(*Sample<clearance_msg_Health>(), kRead[1]);
+  std::vector<std::byte> bytes = by_rules(*Sample<clearance_msg_Health>(), kRepresentations[1]);
   Sample<clearance_msg_Health> came;
   CdrDecoder decoder;
   for (int id = 0; id < 0x10000; ++id) {
-    if (std::ranges::find(kRead, id, &Representation::id) != std::end(kRead)) continue;
+    if (std::ranges::find(kRepresentations, id, &CdrRepresentation::id) !=
+        std::end(kRepresentations))
+      continue;
     bytes[0] = static_cast<std::byte>(id >> 8);
     bytes[1] = static_cast<std::byte>(id & 0xff);
     for (const CdrBytes origin : {CdrBytes::kUnchecked, CdrBytes::kOfReader})

@@ -15,12 +15,12 @@
 namespace clearance::test {
 namespace {
 
-constexpr std::uint64_t kFullEvery = 1000;
+constexpr std::uint64_t kFullReports = 1000;
 
 // Reports with the same pair, one in each cycle.
-class OnePair {
+class ReportsOfOnePair {
  public:
-  explicit OnePair(const clearance_msg_PairDistance& first) {
+  explicit ReportsOfOnePair(const clearance_msg_PairDistance& first) {
     reserve_sequence(message_->pairs, 1);
     EXPECT_TRUE(lists(first)) << "the first report has all pairs";
   }
@@ -33,7 +33,7 @@ class OnePair {
   }
 
  private:
-  ChangedPairs changes_{kFullEvery};
+  ChangedPairs changes_{kFullReports};
   Sample<clearance_msg_Distances> message_;
 };
 
@@ -47,7 +47,7 @@ TEST(ChangedPairs, ListAPairIfAnyBitOfItChangesButThoseOfItsAgesAndCycles) {
         if (free.contains(field.name)) return;
         auto* const bytes = reinterpret_cast<unsigned char*>(&value);
         for (std::size_t bit = 0; bit < 8 * sizeof value; ++bit, ++bits) {
-          OnePair reports(pair);
+          ReportsOfOnePair reports(pair);
           EXPECT_FALSE(reports.lists(pair));
           bytes[bit / 8] ^= static_cast<unsigned char>(1u << bit % 8);
           EXPECT_TRUE(reports.lists(pair)) << field.name << ", bit " << bit;
@@ -61,7 +61,7 @@ TEST(ChangedPairs, ListAPairIfAnyBitOfItChangesButThoseOfItsAgesAndCycles) {
 
 TEST(ChangedPairs, ListNoPairForItsCycles) {
   clearance_msg_PairDistance pair{};
-  OnePair reports(pair);
+  ReportsOfOnePair reports(pair);
   pair.evaluated_cycle = 7;
   EXPECT_FALSE(reports.lists(pair));
   pair.refresh_age_cycles = 9;
@@ -89,7 +89,7 @@ TEST(ChangedPairs, ListAPairIfAPoseIsOlderByMoreThanTheLimitOrBecomesKnownOrUnkn
     for (const Ages& ages : kAges) {
       clearance_msg_PairDistance pair{};
       pair.*age = ages.listed;
-      OnePair reports(pair);
+      ReportsOfOnePair reports(pair);
       pair.*age = ages.now;
       EXPECT_EQ(reports.lists(pair), ages.is_listed) << ages.listed << " -> " << ages.now;
     }
@@ -99,7 +99,7 @@ TEST(ChangedPairs, ListAPairIfAPoseIsOlderByMoreThanTheLimitOrBecomesKnownOrUnkn
 // Two reports, of which the second has no news. `change` makes it another one.
 template <class Change>
 bool second_is_full(std::uint64_t first_cycle, const Change& change) {
-  ChangedPairs changes(kFullEvery);
+  ChangedPairs changes(kFullReports);
   Sample<clearance_msg_Distances> message;
   reserve_sequence(message->pairs, 3);
   const auto send = [&](std::uint64_t cycle, std::uint32_t pairs) {
@@ -128,11 +128,11 @@ TEST(ChangedPairs, AreAllInAReportThatDoesNotFollowTheOneBefore) {
   EXPECT_TRUE(second_is_full(5, [](auto& message) { message.cycle = 5; })) << "it comes again";
   EXPECT_TRUE(second_is_full(5, [](auto& message) { message.lineage = 1; }));
   EXPECT_TRUE(second_is_full(5, [](auto& message) { message.pairs._length = 3; }));
-  EXPECT_TRUE(second_is_full(kFullEvery - 1, [](auto&) {})) << "all come so often";
+  EXPECT_TRUE(second_is_full(kFullReports - 1, [](auto&) {})) << "all come so often";
 }
 
 TEST(ChangedPairs, AreAllInAFirstReportWithoutPairs) {
-  ChangedPairs changes(kFullEvery);
+  ChangedPairs changes(kFullReports);
   clearance_msg_Distances message{};
   message.cycle = 1;
   changes.reduce(message);

@@ -23,8 +23,11 @@ TEST(ReportCheck, FindsReportsThatAClientReadsLate) {
   EXPECT_TRUE(checker.check(report_of(1, 1), kWhen + kLimit).fresh());
   const ReportCheck late = checker.check(report_of(1, 2), kWhen + 5'000'000'000);
   EXPECT_TRUE(late.is_old);
+  EXPECT_FALSE(late.fresh());
   EXPECT_EQ(late.age_ns, 5'000'000'000);
-  EXPECT_TRUE(checker.check(report_of(1, 3), kWhen - kLimit - 1).clocks_disagree);
+  const ReportCheck early = checker.check(report_of(1, 3), kWhen - kLimit - 1);
+  EXPECT_TRUE(early.clocks_disagree);
+  EXPECT_FALSE(early.fresh());
   EXPECT_TRUE(checker.check(report_of(1, 4, 0), kWhen).fresh()) << "not published: a recording";
 }
 
@@ -125,7 +128,7 @@ TEST(ReportCheck, OfGradientsKnowsTheirDaemonAndCountsTheirCycles) {
 }
 
 // The times of two lineages are comparable, their cycles are not.
-class Lineages : public testing::Test {
+class ReportLineages : public testing::Test {
  protected:
   static constexpr std::int64_t kStep = 1'000'000;
 
@@ -139,7 +142,7 @@ class Lineages : public testing::Test {
   ReportChecker checker{kLimit};
 };
 
-TEST_F(Lineages, CountWhatIsMissingBetweenThemByTime) {
+TEST_F(ReportLineages, CountWhatIsMissingBetweenThemByTime) {
   struct Change {
     std::int64_t after_ns;
     std::uint64_t missed;
@@ -156,13 +159,13 @@ TEST_F(Lineages, CountWhatIsMissingBetweenThemByTime) {
   }
 }
 
-TEST_F(Lineages, CountByCyclesWithinOne) {
+TEST_F(ReportLineages, CountByCyclesWithinOne) {
   EXPECT_EQ(missed(1, 5, 100 * kStep), 0u);
   EXPECT_EQ(missed(1, 6, 101 * kStep), 0u);
   EXPECT_EQ(missed(1, 9, 102 * kStep), 2u) << "whatever the time";
 }
 
-TEST_F(Lineages, CountByCyclesWhileThePeriodIsNotKnown) {
+TEST_F(ReportLineages, CountByCyclesWhileThePeriodIsNotKnown) {
   EXPECT_EQ(missed(1, 5, 100 * kStep), 0u);
   EXPECT_EQ(missed(1, 7, 101 * kStep), 1u) << "two periods";
   EXPECT_EQ(missed(2, 10, 102 * kStep), 2u);

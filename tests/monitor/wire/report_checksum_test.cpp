@@ -17,10 +17,10 @@
 namespace clearance::test {
 namespace {
 
-constexpr std::uint64_t kAddress = 9;
+constexpr std::uint64_t kSealAddress = 9;
 
 template <class Message>
-std::vector<std::byte> bytes_of(const Message& message) {
+std::vector<std::byte> sealed_bytes(const Message& message) {
   CdrEncoder encoder;
   const auto bytes = encoder.encode(message);
   return {bytes.begin(), bytes.end()};
@@ -37,12 +37,12 @@ TYPED_TEST(SealedMessage, IsGoodAtItsAddressAndAtNoOther) {
   for (int i = 0; i < 50; ++i) {
     Sample<TypeParam> message;
     fill(random, message);
-    seal(*message, kAddress);
+    seal(*message, kSealAddress);
     EXPECT_TRUE(has_its_crc(*message));
-    EXPECT_EQ(delivery_error(*message, kAddress), ReportError::kGood);
-    EXPECT_EQ(delivery_error(*message, kAddress + 1), ReportError::kOtherAddress);
-    message->address = kAddress + 1;
-    EXPECT_EQ(delivery_error(*message, kAddress + 1), ReportError::kCorrupt);
+    EXPECT_EQ(delivery_error(*message, kSealAddress), ReportError::kGood);
+    EXPECT_EQ(delivery_error(*message, kSealAddress + 1), ReportError::kOtherAddress);
+    message->address = kSealAddress + 1;
+    EXPECT_EQ(delivery_error(*message, kSealAddress + 1), ReportError::kCorrupt);
   }
 }
 
@@ -51,20 +51,20 @@ TYPED_TEST(SealedMessage, OfWhichAnyBitIsFlippedIsRefusedOrCorrupt) {
   std::mt19937_64 random(8);
   Sample<TypeParam> message, came;
   fill(random, message);
-  seal(*message, kAddress);
-  const std::vector<std::byte> good = bytes_of(*message);
+  seal(*message, kSealAddress);
+  const std::vector<std::byte> good = sealed_bytes(*message);
   CdrDecoder decoder;
   std::size_t corrupt = 0, same = 0;
   for (std::size_t bit = 0; bit < 8 * good.size(); ++bit) {
     std::vector<std::byte> bytes = good;
     bytes[bit / 8] ^= static_cast<std::byte>(1u << bit % 8);
     if (!decoder.decode(bytes, came)) continue;
-    if (bytes_of(*came) == good) {
+    if (sealed_bytes(*came) == good) {
       ++same;
       continue;
     }
     ++corrupt;
-    ASSERT_EQ(delivery_error(*came, kAddress), ReportError::kCorrupt) << "bit " << bit;
+    ASSERT_EQ(delivery_error(*came, kSealAddress), ReportError::kCorrupt) << "bit " << bit;
   }
   EXPECT_GT(corrupt, same);
 }
@@ -74,10 +74,10 @@ TEST(Seal, OfAPartnerStatesWhatPartnersCompare) {
   Sample<clearance_msg_Distances> message;
   fill(random, message);
   message->checksum = 5;
-  seal(*message, kAddress);
+  seal(*message, kSealAddress);
   EXPECT_EQ(message->checksum, 5u) << "a daemon on its own states none";
   std::strcpy(message->partner, "left");
-  seal(*message, kAddress);
+  seal(*message, kSealAddress);
   EXPECT_EQ(message->checksum, checksum_of(*message));
 }
 
@@ -123,9 +123,9 @@ TEST(ReportAddress, DiffersByDomainPartitionAndTopic) {
 }
 
 // A report of two sources, with zones that are active.
-class Compared : public testing::Test {
+class PartnersCompare : public testing::Test {
  protected:
-  Compared() {
+  PartnersCompare() {
     reserve_sequence(message->sources, 2);
     reserve_sequence(message->source_contents, 2);
     reserve_sequence(message->active_zones, 2);
@@ -145,7 +145,7 @@ class Compared : public testing::Test {
   Sample<clearance_msg_Distances> message;
 };
 
-TEST_F(Compared, AreChecksumZonesAndPeriodOfAWholeReport) {
+TEST_F(PartnersCompare, AreChecksumZonesAndPeriodOfAWholeReport) {
   const auto counted = [&](const auto& change) { return counts(compared_checksum, change); };
   EXPECT_TRUE(counted([](auto& m) { m.checksum = 8; }));
   EXPECT_TRUE(counted([](auto& m) { m.active_zones._buffer[1] = 3; }));
@@ -154,7 +154,7 @@ TEST_F(Compared, AreChecksumZonesAndPeriodOfAWholeReport) {
   EXPECT_FALSE(counted([](auto& m) { m.publish_ns = 5; }));
 }
 
-TEST_F(Compared, IsNoChecksumOfAReportOfChanges) {
+TEST_F(PartnersCompare, IsNoChecksumOfAReportOfChanges) {
   const auto counted = [&](const auto& change) { return counts(compared_checksum, change); };
   EXPECT_TRUE(counted([](auto& m) { m.changes_since = 4; }));
   EXPECT_FALSE(counted([](auto& m) { m.checksum = 9; }));
@@ -162,7 +162,7 @@ TEST_F(Compared, IsNoChecksumOfAReportOfChanges) {
   EXPECT_TRUE(counted([](auto& m) { m.active_zones._length = 0; }));
 }
 
-TEST_F(Compared, InputsAreTheSourcesWithTheirNumbersAndContents) {
+TEST_F(PartnersCompare, InputsAreTheSourcesWithTheirNumbersAndContents) {
   const auto counted = [&](const auto& change) { return counts(inputs_checksum_of, change); };
   EXPECT_TRUE(counted([](auto& m) { std::strcpy(m.sources._buffer[0].source, "a"); }));
   EXPECT_TRUE(counted([](auto& m) { std::strcpy(m.sources._buffer[1].source, "bc"); }));
