@@ -291,7 +291,8 @@ bool Stops::bound_by_levers(const Inputs& inputs, const Report& report,
       const double enough = std::min(robot.question.far_enough, now.upper - kTolerance);
       known.is_enough = keeps(known.lower, margin) && known.lower >= enough;
     }
-    is_enough = is_enough && (known.is_enough || (!is_known && margin == -kInfinity));
+    // One that is not known has no margin: unknown_pair() has found none with one.
+    is_enough = is_enough && (known.is_enough || !is_known);
   }
   return is_enough;
 }

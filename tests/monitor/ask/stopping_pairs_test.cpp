@@ -101,5 +101,95 @@ TEST(StoppingPairs, OfWhichARobotHasNoneLimitNothing) {
   EXPECT_TRUE(std::isnan(late.time));
 }
 
+const std::string kMovingBall = "max_speed: 0.1, may_jump: true, ";
+const std::string kThird = "  - {name: third, max_speed: 1, sphere: {radius: 0.1}}\n";
+
+TEST(StoppingPairs, OfWhichSeveralAreUnknownNameTheFirst) {
+  const Scene scene = test::scene_of_scara(
+      {.ball = kMovingBall, .objects = kThird, .pairs = "  - {between: [arm, third]}\n"});
+  const RobotStop stop = StoppingTicks(scene).tick(0.0, kTurning).stops.at(0);
+  EXPECT_EQ(stop.validity, SeparationValidity::kUnknown);
+  EXPECT_EQ(stop.pair, std::min(pair_between(scene, "finger", "ball"),
+                                pair_between(scene, "finger", "third")));
+}
+
+TEST(StoppingPairs, OfAnObjectThatIsTakenAwayLimitNothing) {
+  StoppingTicks ticks(test::scene_of_scara({.ball = kMovingBall}));
+  const PoseSample in_the_path = test::sample(0, test::at(2.0, 0.2, 0.0), ticks.now + test::kTick);
+  EXPECT_LT(ticks.tick(0.0, kTurning, {in_the_path}).stops.at(0).scaling, 1.0);
+  ASSERT_TRUE(ticks.monitor.set_absent(0, true));
+  const Report& report = ticks.tick(1e-3 * kTurning, kTurning);
+  EXPECT_EQ(report.stops.at(0).scaling, 1.0);
+  EXPECT_EQ(report.stops[0].validity, SeparationValidity::kMeasured);
+  EXPECT_TRUE(std::isnan(report.pairs.at(0).stop_lower));
+}
+
+// A left arm beside a ball, and what `rest` has besides.
+Scene left_scara_and(const std::string& robots, const std::string& sections,
+                     const std::string& pairs) {
+  const test::ScratchFolder folder;
+  test::write_text(folder / "scara.urdf", test::finger_urdf());
+  return scene_of(
+      "name: test\nunits: {length: m, angle: rad}\nrobots:\n"
+      "  - {name: left, urdf: scara.urdf, prefix: left_, age_limit_ms: 20, joints: {elbow: "
+      "{velocity: 2}}, stopping: {reaction_ms: 40, path: kept, time_ms: 100}}\n" +
+          robots + sections +
+          "objects:\n  - {name: ball, fixed: true, sphere: {radius: 0.1}, pose: {xyz: [0, 4, "
+          "0]}}\n" +
+          kThird + "pairs:\n  - {between: [left, ball]}\n" + pairs,
+      folder / "cell.yaml");
+}
+const std::string kRight =
+    "  - {name: right, urdf: scara.urdf, prefix: right_, age_limit_ms: 20, joints: {elbow: "
+    "{velocity: 2}}, base: {pose: {xyz: [5, 0, 0], rpy: [0, 0, 3.141592653589793]}}, stopping: "
+    "{reaction_ms: 40, path: kept, time_ms: 100}}\n";
+
+// All joints of these robots stand at 0.
+std::vector<JointSample> standing(const Scene& scene, const std::string& prefix, std::int64_t now) {
+  std::vector<JointSample> said;
+  for (std::uint32_t v = 0; v < scene.variables.size(); ++v) {
+    if (!scene.variables[v].name.starts_with(prefix)) continue;
+    said.push_back(test::joint(v, 0.0, now));
+    said.back().has_velocity = true;
+  }
+  return said;
+}
+
+// What no pair of the robot is about may be unknown: a robot, and what a camera sees.
+TEST(StoppingPairs, AreKnownWhileARobotOrACameraOfOtherPairsWasNeverHeard) {
+  const Scene beside_robot = left_scara_and(kRight, "", "  - {between: [right, third]}\n");
+  const Scene beside_camera = left_scara_and(
+      "",
+      "sensors: [{name: eye, points: /cam/points, depth_error: {constant: 0.01}, range: [0.3, 4], "
+      "max_speed: 0.1, mount: {pose: {xyz: [0, 0, 2]}}}]\n",
+      "  - {between: [third, eye]}\n");
+  for (const Scene& scene : {beside_robot, beside_camera}) {
+    Monitor monitor(scene);
+    const Report& report = monitor.tick({}, standing(scene, "left_", test::kStart), test::kStart);
+    EXPECT_EQ(report.stops.at(0).validity, SeparationValidity::kMeasured);
+    EXPECT_EQ(report.stops[0].scaling, 1.0);
+  }
+}
+
+// The right finger is 0.9 m away, and may have come nearer at 0.5 m/s since it was heard.
+TEST(StoppingPairs, WithARobotThatIsLateCountItsLimitsInsteadOfItsStop) {
+  const Scene scene = left_scara_and(kRight, "",
+                                     "  - {between: [left, right]}\n  - {between: "
+                                     "[third, ball]}\n");
+  Monitor monitor(scene);
+  const std::uint32_t pair = pair_between(scene, "left_finger", "right_finger");
+  const auto lower_of = [&](const Report& report) {
+    return std::ranges::find(report.pairs, pair, &PairReport::pair)->stop_lower;
+  };
+  const double both = lower_of(monitor.tick({}, standing(scene, "", test::kStart), test::kStart));
+  EXPECT_NEAR(both, 0.9, kStopTolerance);
+  const std::int64_t now = test::kStart + 25 * test::kTick;
+  const Report& report = monitor.tick({}, standing(scene, "left_", now), now);
+  EXPECT_EQ(report.stops.at(0).validity, SeparationValidity::kMeasured);
+  EXPECT_EQ(report.stops.at(1).validity, SeparationValidity::kUnknown);
+  EXPECT_LE(lower_of(report), 0.9 - 0.5 * (0.025 + test::kReaction));
+  EXPECT_GT(lower_of(report), 0.1) << "beyond this a bound need not be tight";
+}
+
 }  // namespace
 }  // namespace clearance
