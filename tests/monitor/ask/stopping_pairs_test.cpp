@@ -63,16 +63,6 @@ TEST(StoppingPairs, CountIfTheyAreNotPublished) {
   }
 }
 
-// Both are unknown while an object of the pair was never heard of.
-TEST(StoppingPairs, AreUnknownIfTheyAreNotPublishedAndAnObjectWasNeverHeardOf) {
-  Scene scene = test::scene_of_scara({.ball = "max_speed: 0.1, may_jump: true, "});
-  for (ObjectPair& pair : scene.pairs) pair.publish = false;
-  const RobotStop stop = StoppingTicks(scene).tick(0.0, kTurning).stops.at(0);
-  EXPECT_EQ(stop.validity, SeparationValidity::kUnknown);
-  EXPECT_EQ(stop.scaling, 0.0);
-  EXPECT_EQ(stop.pair, pair_between(scene, "finger", "ball"));
-}
-
 // As select_share() leaves a robot to another share of the cell.
 Scene scara_without_a_pair() {
   Scene scene =

@@ -97,15 +97,6 @@ TEST(SceneIds, OfFormerScenesLeadToThoseOfTheSceneInForce) {
   EXPECT_THAT(heard.objects(), ElementsAre(2, 5)) << "a scene does not follow itself";
 }
 
-TEST(SceneIds, OfAnEmptyBatchAreNone) {
-  SceneIds ids(scene_of_size(3, 2));
-  change_to(ids, 2, {1, kNoCounterpart}, {0, 1});
-  std::vector<PoseSample> poses;
-  std::vector<JointSample> joints;
-  EXPECT_TRUE(ids.append({SourceName("arm"), 1, 1, {}}, poses, joints));
-  EXPECT_TRUE(poses.empty() && joints.empty());
-}
-
 TEST(SceneIds, KnowTheLastEightScenes) {
   SceneIds ids(scene_of_size(3, 2));
   HeardIds heard;

@@ -35,12 +35,6 @@ TEST(SourceNumbers, BeginWithThoseThatTheCellNamesAndReplaceTheOneHeardLongestAg
   }
 }
 
-TEST(SourceNumbers, AreNoneForOthersIfTheCellNamesAsManyAsThereAre) {
-  SourceNumbers numbers(scene_naming(kMaxSources));
-  EXPECT_EQ(numbers.of(SourceName("other")), kNoSource);
-  EXPECT_EQ(numbers.of(numbered_name("named", 3)), 3u);
-}
-
 TEST(SourceNumbers, KeepThoseThatAChangedSceneNamesIfThereIsRoomForAll) {
   SourceNumbers numbers(scene_naming(kMaxSources - 2));
   const std::uint32_t heard = numbers.of(SourceName("heard"));

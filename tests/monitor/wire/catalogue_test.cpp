@@ -65,12 +65,6 @@ TEST(Catalogue, HasContactsWithTheEndsThatAreStated) {
   }
 }
 
-TEST(Catalogue, SaysSinceWhenItsSceneIsInForce) {
-  const auto catalogue = make_catalogue(plain_cell(), {.began_after = 3, .from = 5});
-  EXPECT_EQ(catalogue->began_after, 3u);
-  EXPECT_EQ(catalogue->in_force_from, 5u);
-}
-
 TEST(Catalogue, NamesTheZonesWithSeparationAndTheRobotsThatStateStops) {
   Cell cell = plain_cell();
   cell.scene.zones[1].separation.emplace();
@@ -141,40 +135,6 @@ TEST(Catalogue, OfAShareHasItsPairsOrThoseOfTheWholeCell) {
   EXPECT_STREQ(whole->share, "odd");
   EXPECT_THAT(sequence_list(whole->pair_shares), ElementsAre(0, 1, 0));
   EXPECT_THAT(first_objects(*whole), ElementsAre(0, 0, 1));
-}
-
-TEST(Catalogue, OfACellThatIsNotDividedHasNoShares) {
-  for (const CataloguePairs pairs : {CataloguePairs::kOfScene, CataloguePairs::kOfWholeCell}) {
-    const auto catalogue = make_catalogue(plain_cell(), {}, pairs);
-    EXPECT_STREQ(catalogue->share, "");
-    EXPECT_EQ(catalogue->shares._length, 0u);
-    EXPECT_EQ(catalogue->pair_shares._length, 0u);
-    EXPECT_EQ(catalogue->pairs._length, 3u);
-  }
-}
-
-// As a client of a share reads them.
-TEST(MapPairs, LeadsToTheIdsOfTheWholeCellInEveryFieldThatMeansAPair) {
-  Sample<clearance_msg_Distances> message;
-  reserve_sequence(message->pairs, 3);
-  message->pairs._length = 3;
-  reserve_sequence(message->contacts, 1);
-  message->contacts._length = 1;
-  for (std::uint32_t i = 0; i < 3; ++i) message->pairs._buffer[i].pair = i;
-  message->pairs._buffer[1].part_a = 1;
-  message->minimum.pair = 1;
-  message->contacts._buffer[0].pair = message->contacts._buffer[0].contact = 1;
-  constexpr std::uint32_t kIds[] = {4, 9};
-  MapPairs(kIds).in(*message);
-  EXPECT_EQ(message->pairs._buffer[0].pair, 4u);
-  EXPECT_EQ(message->pairs._buffer[1].pair, 9u);
-  EXPECT_EQ(message->pairs._buffer[2].pair, 2u) << "an id without a counterpart stays";
-  EXPECT_EQ(message->pairs._buffer[1].part_a, 1u);
-  EXPECT_EQ(message->minimum.pair, 9u);
-  EXPECT_EQ(message->contacts._buffer[0].pair, 9u);
-  EXPECT_EQ(message->contacts._buffer[0].contact, 1u);
-  MapPairs({}).in(*message);
-  EXPECT_EQ(message->minimum.pair, 9u) << "without ids, nothing changes";
 }
 
 }  // namespace

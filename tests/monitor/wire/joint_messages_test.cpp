@@ -5,7 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <optional>
 #include <string>
 #include <vector>
 
@@ -65,23 +64,10 @@ TEST(JointNames, MeanAJointByTopicWithItsPrefixOrWithout) {
   }
 }
 
-TEST(JointNames, MeanTheRobotWhosePrefixTheyHaveIfTwoAreOnOneTopic) {
-  Scene scene;
-  scene.robots.resize(2);
-  scene.robots[0].prefix = "x_";
-  scene.variables.resize(2);
-  scene.variables[0].name = "x_a";
-  scene.variables[1].name = "a";
-  scene.variables[1].robot = 1;
-  for (Robot& robot : scene.robots) robot.joint_states = "/both";
-  EXPECT_EQ(JointNames(scene, "/both").find("a"), 1u);
-  EXPECT_EQ(JointNames(scene, "/both").find("x_a"), 0u);
-}
-
-// What a message says of a joint; no position: the list of positions is too short.
+// What a message says of a joint.
 struct MessageEntry {
   std::string name;
-  std::optional<double> position;
+  double position;
 };
 
 Sample<clearance_msg_JointStates> own_message(const std::vector<MessageEntry>& entries) {
@@ -91,7 +77,7 @@ Sample<clearance_msg_JointStates> own_message(const std::vector<MessageEntry>& e
   reserve_sequence(message->positions, entries.size());
   for (const MessageEntry& entry : entries) {
     message->names._buffer[message->names._length++] = dds_string_dup(entry.name.c_str());
-    if (entry.position) message->positions._buffer[message->positions._length++] = *entry.position;
+    message->positions._buffer[message->positions._length++] = entry.position;
   }
   return message;
 }
@@ -101,7 +87,7 @@ Sample<sensor_msgs_msg_dds__JointState_> ros_message(const std::vector<MessageEn
   reserve_sequence(message->position, entries.size());
   for (const MessageEntry& entry : entries) {
     message->name._buffer[message->name._length++] = dds_string_dup(entry.name.c_str());
-    if (entry.position) message->position._buffer[message->position._length++] = *entry.position;
+    message->position._buffer[message->position._length++] = entry.position;
   }
   return message;
 }
@@ -124,7 +110,7 @@ void expect_joints(const std::vector<KnownJoint>& expected, const std::vector<Jo
 // The tick refuses what is not finite.
 TEST(JointMessages, OfThreeEntriesSayOfAJointItsOnePositionOrNone) {
   constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  const MessageEntry kNames[] = {{"left_a", {}}, {"right_a", {}}, {"left_b", {}}, {"wheel", {}}};
+  constexpr const char* kNames[] = {"left_a", "right_a", "left_b", "wheel"};
   const std::uint32_t kVariables[] = {0, 2, kUnusedJoint, kUnknownJoint};
   constexpr double kPositions[] = {0.1, 0.2, kNone};
   Scene scene = scene_of_two_arms();
@@ -137,7 +123,7 @@ TEST(JointMessages, OfThreeEntriesSayOfAJointItsOnePositionOrNone) {
     for (int i = 0; i < 3; ++i) {
       const std::size_t name = choice.of(std::size(kNames));
       const double position = kPositions[choice.of(std::size(kPositions))];
-      entries.push_back({kNames[name].name, position});
+      entries.push_back({kNames[name], position});
       all.push_back({kVariables[name], position});
     }
     std::vector<KnownJoint> by_ours, by_ros;
@@ -158,21 +144,6 @@ TEST(JointMessages, OfThreeEntriesSayOfAJointItsOnePositionOrNone) {
     ASSERT_FALSE(testing::Test::HasFailure()) << "run " << choice.runs();
   }
   EXPECT_EQ(choice.runs(), 12u * 12u * 12u);
-}
-
-TEST(JointMessages, WithTooFewPositionsLackThoseOfTheLastJoints) {
-  constexpr double kNone = std::numeric_limits<double>::quiet_NaN();
-  const Scene scene = scene_of_two_arms();
-  const std::vector<MessageEntry> entries = {{"left_a", 0.5}, {"right_a", {}}};
-  PoseBatch batch;
-  from_wire(*own_message(entries), JointNames(scene), batch);
-  expect_joints({{0, 0.5}, {2, kNone}}, batch.joints);
-  from_wire(*ros_message({{"right_a", 0.5}, {"right_a", {}}}), JointNames(scene, "/"), 77, batch);
-  expect_joints({{2, kNone}, {2, kNone}}, batch.joints);
-  from_wire(*own_message({{"right_a", {}}}), JointNames(scene), batch);
-  expect_joints({{2, kNone}}, batch.joints);
-  from_wire(*ros_message({{"right_a", {}}}), JointNames(scene, "/"), 77, batch);
-  expect_joints({}, batch.joints);
 }
 
 // A list of another length says of no joint whose its velocities are.
@@ -201,31 +172,11 @@ TEST(JointMessages, HaveVelocitiesIfThereIsOneForEachName) {
   EXPECT_TRUE(batch.joints.empty());
 }
 
-TEST(JointMessages, OfABatchComeBackAsTheyWere) {
-  const Scene scene = scene_of_two_arms();
-  for (const bool has_velocity : {false, true}) {
-    PoseBatch sent{SourceName("arm"), 9, 0, {}};
-    for (const std::uint32_t variable : {0u, 2u, 8u})
-      sent.joints.push_back({.variable = variable,
-                             .stamp_ns = 77,
-                             .position = 0.5 + variable,
-                             .velocity = has_velocity ? -1.0 - variable : 0.0,
-                             .has_velocity = has_velocity,
-                             .stopping = has_velocity});
-    PoseBatch came;
-    from_wire(*make_joint_states(sent, scene), JointNames(scene), came);
-    EXPECT_EQ(came.source.view(), "arm");
-    EXPECT_EQ(came.sequence_number, 9u);
-    expect_joints({{0, 0.5}, {2, 2.5}, {kUnknownJoint, 8.5}}, came.joints);
-    for (std::size_t i = 0; i < came.joints.size(); ++i) {
-      EXPECT_EQ(came.joints[i].has_velocity, has_velocity);
-      EXPECT_EQ(came.joints[i].velocity, sent.joints[i].velocity);
-      EXPECT_EQ(came.joints[i].stopping, has_velocity);
-    }
-  }
-  const auto empty = make_joint_states(PoseBatch{SourceName("arm"), 9, 0, {}}, scene);
-  EXPECT_EQ(empty->names._length, 0u);
-  EXPECT_EQ(empty->sequence_number, 9u);
+TEST(JointMessages, OfAnEmptyBatchHaveNoNames) {
+  const PoseBatch batch{SourceName("arm"), 9, 0, {}};
+  const auto message = make_joint_states(batch, scene_of_two_arms());
+  EXPECT_EQ(message->names._length, 0u);
+  EXPECT_EQ(message->sequence_number, 9u);
 }
 
 }  // namespace

@@ -109,24 +109,6 @@ TEST(ReportCheck, KnowsAReportThatItsDaemonHasSentBefore) {
   EXPECT_FALSE(of_replay.has_had(report_of(0, 5))) << "replays have no number of a daemon";
 }
 
-// Messages without partners and lineages.
-TEST(ReportCheck, OfGradientsKnowsTheirDaemonAndCountsTheirCycles) {
-  clearance_msg_Gradients gradients{};
-  gradients.daemon = 1;
-  gradients.cycle = 5;
-  gradients.publish_ns = kWhen;
-  ReportChecker checker(kLimit);
-  EXPECT_FALSE(checker.has_had(gradients));
-  checker.check(gradients, kWhen);
-  EXPECT_TRUE(checker.has_had(gradients));
-  gradients.cycle = 8;
-  EXPECT_FALSE(checker.has_had(gradients));
-  EXPECT_EQ(checker.check(gradients, kWhen).missed, 2u);
-  gradients.daemon = 2;
-  gradients.cycle = 9;
-  EXPECT_TRUE(checker.check(gradients, kWhen).other_daemon);
-}
-
 // The times of two lineages are comparable, their cycles are not.
 class ReportLineages : public testing::Test {
  protected:
@@ -157,12 +139,6 @@ TEST_F(ReportLineages, CountWhatIsMissingBetweenThemByTime) {
     EXPECT_EQ(missed(1, 6, 101 * kStep), 0u);
     EXPECT_EQ(missed(2, 700, 101 * kStep + change.after_ns), change.missed) << change.after_ns;
   }
-}
-
-TEST_F(ReportLineages, CountByCyclesWithinOne) {
-  EXPECT_EQ(missed(1, 5, 100 * kStep), 0u);
-  EXPECT_EQ(missed(1, 6, 101 * kStep), 0u);
-  EXPECT_EQ(missed(1, 9, 102 * kStep), 2u) << "whatever the time";
 }
 
 TEST_F(ReportLineages, CountByCyclesWhileThePeriodIsNotKnown) {

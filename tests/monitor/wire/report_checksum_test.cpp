@@ -5,9 +5,6 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
-#include <set>
-#include <string>
-#include <utility>
 #include <vector>
 
 #include "monitor/wire/cdr.hpp"
@@ -100,28 +97,6 @@ TEST(Crc, TakesANullTextForAnEmptyOne) {
   EXPECT_NE(crc_of(*null), crc_of(*one));
 }
 
-// The CRC is never 0, which states none.
-TEST(Crc, OfAMessageThatStatesNoneIsCorrupt) {
-  const clearance_msg_ZoneState message{};
-  EXPECT_EQ(delivery_error(message, 0), ReportError::kCorrupt);
-}
-
-TEST(ReportAddress, DiffersByDomainPartitionAndTopic) {
-  std::set<std::uint64_t> addresses;
-  for (const std::uint32_t domain : {0u, 1u}) {
-    for (const auto& [partition, topic] : {std::pair("", ""),
-                                           {"a", ""},
-                                           {"", "a"},
-                                           {"a", "bc"},
-                                           {"ab", "c"},
-                                           {"abc", ""},
-                                           {"b", "a"},
-                                           {"a", "b"}})
-      addresses.insert(report_address(domain, partition, topic));
-  }
-  EXPECT_EQ(addresses.size(), 16u);
-}
-
 // A report of two sources, with zones that are active.
 class PartnersCompare : public testing::Test {
  protected:
@@ -189,29 +164,6 @@ TEST(ReportChecksum, OfAReportIsThatOfItsMessageAndCountsEachOfItsPairs) {
     pair.swept_lower = 0.125;
     EXPECT_NE(checksum_of(report), before);
   }
-}
-
-TEST(ReportChecksum, OfTheRestCountsEachOfItsListsAndTheState) {
-  Report report;
-  std::set<std::uint64_t> sums;
-  const auto note = [&](std::uint64_t state = 1) { sums.insert(checksum_of_rest(report, state)); };
-  note();
-  note(2);
-  report.zones.resize(1);
-  note();
-  report.separated_pairs.resize(1);
-  note();
-  report.separated_zones.resize(1);
-  note();
-  report.stops.resize(1);
-  note();
-  report.gradients.rates.resize(1);
-  note();
-  report.gradients.drifts.resize(1);
-  note();
-  report.gradients.alternatives.resize(1);
-  note();
-  EXPECT_EQ(sums.size(), 9u);
 }
 
 }  // namespace

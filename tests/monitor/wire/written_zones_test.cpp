@@ -2,9 +2,6 @@
 
 #include <gtest/gtest.h>
 
-#include "clearance.h"
-#include "monitor/interface/report.hpp"
-
 namespace clearance {
 namespace {
 
@@ -21,25 +18,6 @@ TEST(WrittenZones, AreWhatWasSetLastUntilTheyAreForgotten) {
   EXPECT_FALSE(written.is_active(0));
   written.forget(0);
   EXPECT_FALSE(written.last(0));
-}
-
-TEST(WrittenZones, TakeAReportAndItsMessageForTheSame) {
-  ZoneReport report;
-  report.active = true;
-  report.cause = ZoneCause::kLate;
-  report.cause_object = 5;
-  clearance_msg_ZoneState message{};
-  message.active = true;
-  message.cause = static_cast<std::uint8_t>(ZoneCause::kLate);
-  message.cause_object = 5;
-  EXPECT_EQ(WrittenZone::of(report), WrittenZone::of(message));
-  for (const auto& change : {+[](ZoneReport& zone) { zone.active = false; },
-                             +[](ZoneReport& zone) { zone.cause = ZoneCause::kNear; },
-                             +[](ZoneReport& zone) { zone.cause_object = 6; }}) {
-    ZoneReport other = report;
-    change(other);
-    EXPECT_NE(WrittenZone::of(other), WrittenZone::of(message));
-  }
 }
 
 }  // namespace
