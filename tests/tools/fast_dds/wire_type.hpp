@@ -12,7 +12,10 @@
 #if __has_include(<fastdds/LibrarySettings.hpp>)
 #define CLEARANCE_FAST_DDS_3
 #include <fastdds/dds/core/ReturnCode.hpp>
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.hpp>
 #include <fastdds/utils/IPLocator.hpp>
+#else
+#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #endif
 
 namespace fdds = eprosima::fastdds::dds;
