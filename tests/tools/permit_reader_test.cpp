@@ -95,8 +95,8 @@ TEST_F(PermitReaderTest, ScalesBetweenTheTwoDistances) {
   EXPECT_TRUE(comes(0.3, scaled(0.25, Cause::kDistance)));
   EXPECT_TRUE(comes(0.2 - 1e-6, scaled(0.0, Cause::kDistance)));
   EXPECT_TRUE(comes(-0.5, scaled(0.0, Cause::kDistance)));
+  EXPECT_TRUE(comes(0.3, [this](const Permit&) { return has_told("a distance"); }));
   EXPECT_TRUE(comes(0.7, scaled(1.0, Cause::kNone)));
-  EXPECT_TRUE(has_told("a distance"));
 }
 
 TEST_F(PermitReaderTest, CountsOnlyThePairsThatAreNamed) {
@@ -162,6 +162,25 @@ TEST_F(PermitReaderTest, HoldsAfterTheDaemonIsKilledAndUntilAnotherOneIsHeard) {
             ReportError::kSilent);
   test::ChildProcess again(test::kDaemon, test::with({file.path()}, test::dds_arguments(dds)));
   EXPECT_TRUE(comes(1.0, passes));
+}
+
+TEST_F(PermitReaderTest, HoldsAfterTwoFaultyReportsUntilTheyAreAcknowledged) {
+  read();
+  ASSERT_TRUE(comes(1.0, [](const Permit& permit) { return permit.scaling == 1.0; }));
+  const dds_entity_t writer =
+      participant.writer(clearance::TopicKind::kDistances, cell.topics.distances);
+  ASSERT_TRUE(test::eventually([&] { return test::matched_readers(writer) > 0; }));
+  for (std::uint64_t cycle : {1u, 2u}) {
+    clearance_msg_Distances without_checksum{};
+    without_checksum.cycle = cycle;
+    ASSERT_EQ(dds_write(writer, &without_checksum), DDS_RETCODE_OK);
+  }
+  const auto is_held = [](const Permit& permit) {
+    return permit.cause_at(client::monotonic_ns()) == Cause::kHeld && !is_relied_on(permit);
+  };
+  EXPECT_TRUE(comes(1.0, is_held));
+  reader->acknowledge();
+  EXPECT_TRUE(comes(1.0, [&](const Permit& permit) { return is_relied_on(permit); }));
 }
 
 TEST_F(PermitReaderTest, RefusesOptionsThatLimitNothingOrContradictEachOther) {

@@ -54,14 +54,24 @@ void reduce(Permit& permit, double scaling, Cause cause) {
 }  // namespace
 
 const char* name(Cause cause) noexcept {
-  constexpr std::array kNames = {"none",   "no report may be relied on", "not known", "a distance",
-                                 "a zone", "the daemon's scaling"};
+  constexpr std::array kNames = {"none",
+                                 "no report may be relied on",
+                                 "faulty reports, until they are acknowledged",
+                                 "not known",
+                                 "a distance",
+                                 "a zone",
+                                 "the daemon's scaling"};
   return kNames[static_cast<std::size_t>(cause)];
 }
 
 ReportError Permit::error(std::int64_t at_ns) const noexcept {
   const ReportError error = reports.error(at_ns);
   return error != ReportError::kGood || !has_separations ? error : separations.error(at_ns);
+}
+
+Cause Permit::cause_at(std::int64_t at_ns) const noexcept {
+  if (reports.is_held() || (has_separations && separations.is_held())) return Cause::kHeld;
+  return error(at_ns) != ReportError::kGood ? Cause::kNotRelied : cause;
 }
 
 PermitReader::PermitReader(const clearance::DdsOptions& dds, PermitOptions options, Tell tell)
@@ -161,15 +171,15 @@ void PermitReader::limit_by_scaling(Permit& permit) const {
   if (permit.of_present < 1.0 && permit.cause == Cause::kNone) permit.cause = Cause::kScaling;
 }
 
+// Says one change per second at most.
 void PermitReader::tell_changes(const Permit& permit) {
-  const ReportError error = permit.error(client::monotonic_ns());
-  const bool is_held = reports_.is_held() || (separation_ && separation_->is_held());
-  std::string now = error != ReportError::kGood
-                        ? std::string(name(Cause::kNotRelied)) + ": " + client::name(error)
-                        : name(permit.cause);
-  if (is_held) now += ", until it is acknowledged";
-  if (now == told_) return;
-  told_ = std::move(now);
+  const std::int64_t now_ns = client::monotonic_ns();
+  const ReportError error = permit.error(now_ns);
+  std::string text = name(permit.cause_at(now_ns));
+  if (error != ReportError::kGood) text += std::string(": ") + client::name(error);
+  if (text == told_ || now_ns - told_ns_ < 1'000'000'000) return;
+  told_ = std::move(text);
+  told_ns_ = now_ns;
   tell_(told_);
 }
 

@@ -21,10 +21,11 @@ namespace clearance_control {
 enum class Cause : std::uint8_t {
   kNone = 0,
   kNotRelied = 1,  // fail_safe() of the client library
-  kUnknown = 2,    // a figure is unknown, late or not certified, or no pair or zone has that name
-  kDistance = 3,   // below slow_from
-  kZone = 4,       // a zone is active
-  kScaling = 5,    // the daemon's scaling is below 1
+  kHeld = 2,       // the same until it is acknowledged, as is_held() says
+  kUnknown = 3,    // a figure is unknown, late or not certified, or no pair or zone has that name
+  kDistance = 4,   // below slow_from
+  kZone = 5,       // a zone is active
+  kScaling = 6,    // the daemon's scaling is below 1
 };
 [[nodiscard]] const char* name(Cause cause) noexcept;
 
@@ -50,13 +51,15 @@ struct Permit {
 
   // Why no report may be relied on now; kGood: the permit counts.
   [[nodiscard]] clearance::ReportError error(std::int64_t at_ns) const noexcept;
+  // The cause with regard to that.
+  [[nodiscard]] Cause cause_at(std::int64_t at_ns) const noexcept;
 };
 
 class PermitReader {
  public:
   using Tell = std::function<void(const std::string&)>;
   // Throws DdsError, or std::invalid_argument if the options contradict each other. `tell` gets a
-  // sentence each time that the cause changes, from the thread.
+  // text when the cause changes, from the thread, and no more than one per second.
   PermitReader(const clearance::DdsOptions& dds, PermitOptions options, Tell tell);
   ~PermitReader();
   PermitReader(const PermitReader&) = delete;
@@ -84,6 +87,7 @@ class PermitReader {
   clearance::client::Catalogue names_;
   std::vector<clearance::client::Pair> pairs_;
   std::string told_;
+  std::int64_t told_ns_ = 0;
   NewestValue<Permit> newest_;
   std::atomic<bool> is_acknowledged_{false}, stop_{false};
   std::thread thread_;
