@@ -130,11 +130,14 @@ Daemon::Daemon(const std::filesystem::path& folder, const std::string& stopping)
     throw std::runtime_error("clearanced does not start");
 }
 
-void Daemon::kill() {
-  if (pid_ <= 0) return;
+std::chrono::steady_clock::time_point Daemon::kill() const {
   ::kill(pid_, SIGKILL);
+  return std::chrono::steady_clock::now();
+}
+
+Daemon::~Daemon() {
+  kill();
   waitpid(pid_, nullptr, 0);
-  pid_ = -1;
 }
 
 LimitedRobot::LimitedRobot(const RobotOptions& options) : stopping(options.stopping) {

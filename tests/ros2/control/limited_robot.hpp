@@ -35,11 +35,11 @@ class Daemon {
   // `stopping`: text of that key of the robot, or nothing. Reports are told to domain
   // ROS_DOMAIN_ID.
   Daemon(const std::filesystem::path& folder, const std::string& stopping);
-  ~Daemon() { kill(); }
+  ~Daemon();
   Daemon(const Daemon&) = delete;
   Daemon& operator=(const Daemon&) = delete;
-  // Returns when the process has ended.
-  void kill();
+  // SIGKILL. Returns a time after which the process has done nothing.
+  std::chrono::steady_clock::time_point kill() const;
 
  private:
   pid_t pid_ = -1;

@@ -125,19 +125,14 @@ TEST(LimiterInTheLoop, HoldsBelowTheMargin) {
 // No report comes after the end of the daemon, so every update later than the time for which one
 // counts holds.
 void hold_after_the_end(LimitedRobot& robot, std::chrono::milliseconds counts_for,
-                        const std::function<Values()>& references) {
-  robot.daemon->kill();
-  const auto end = std::chrono::steady_clock::now() + counts_for;
+                        const std::function<Values()>& references, int updates) {
+  const auto end = robot.daemon->kill() + counts_for;
   while (std::chrono::steady_clock::now() < end) robot.step(references());
-  int moving = 0;
-  for (int k = 0; k < 400; ++k) {
+  for (int k = 0; k < updates; ++k) {
     robot.step(references());
     ASSERT_EQ(robot.observed().cause, kNotRelied) << k;
     ASSERT_EQ(robot.observed().scaling, 0.0) << k;
-    moving += speed(robot) > 1e-12 ? 1 : 0;
   }
-  EXPECT_LE(moving, static_cast<int>(0.5 / kDeceleration / kPeriod) + 2);
-  EXPECT_LT(speed(robot), 1e-12);
 }
 
 void hold_and_resume(RobotOptions options, const std::function<Values()>& references) {
@@ -145,7 +140,9 @@ void hold_and_resume(RobotOptions options, const std::function<Values()>& refere
   LimitedRobot robot(options);
   const auto is_fast = [&] { return is_free(robot) && speed(robot) > 0.15; };
   ASSERT_TRUE(robot.step_until(references, is_fast, 30.0));
-  hold_after_the_end(robot, std::chrono::milliseconds(100), references);
+  hold_after_the_end(robot, std::chrono::milliseconds(100), references,
+                     static_cast<int>(0.5 / kDeceleration / kPeriod) + 2);
+  EXPECT_LT(speed(robot), 1e-12);
   robot.daemon = std::make_unique<Daemon>(robot.folder, robot.stopping);
   double before = speed(robot);
   const auto is_fast_without_a_jump = [&] {
@@ -170,12 +167,13 @@ TEST(LimiterInTheLoop, HoldsPositionsAfterTheDaemonIsKilledAndResumesWithTheNext
 
 TEST(LimiterInTheLoop, HoldsTwoPeriodsAfterTheDaemonIsKilled) {
   LimitedRobot robot({.slide = -3.0, .reports_count_for = "0.0"});
-  ASSERT_TRUE(robot.step_until(
-      [] {
-        return Values{0.1, 0.0};
-      },
-      [&] { return is_free(robot); }, 30.0));
-  hold_after_the_end(robot, std::chrono::milliseconds(2), [] { return Values{0.1, 0.0}; });
+  const auto forward = [] { return Values{0.1, 0.0}; };
+  for (int round = 0; round < 8; ++round) {
+    ASSERT_TRUE(robot.step_until(
+        forward, [&] { return is_free(robot); }, 30.0));
+    hold_after_the_end(robot, std::chrono::milliseconds(2), forward, 20);
+    robot.daemon = std::make_unique<Daemon>(robot.folder, robot.stopping);
+  }
 }
 
 // The robot brakes as the cell states, and its reports count for less than the stated reaction.
