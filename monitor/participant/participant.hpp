@@ -97,7 +97,9 @@ class Participant {
   bool is_own_ = true;
   dds_domainid_t domain_id_ = 0;
   std::string partition_, where_, how_to_reach_;
-  std::shared_ptr<const dds_entity_t> domain_;  // shared by the participants of this process
+  struct OpenDomain;
+  static std::shared_ptr<const OpenDomain> open_domain(const DdsOptions& options, std::uint32_t id);
+  std::shared_ptr<const OpenDomain> domain_;  // shared by the participants of this process
   dds_entity_t participant_ = 0, publisher_ = 0, subscriber_ = 0;
 };
 
