@@ -129,7 +129,7 @@ Scene left_scara_and(const std::string& robots, const std::string& sections,
           kThird + "pairs:\n  - {between: [left, ball]}\n" + pairs,
       folder / "cell.yaml");
 }
-const std::string kRight =
+const std::string kRightScara =
     "  - {name: right, urdf: scara.urdf, prefix: right_, age_limit_ms: 20, joints: {elbow: "
     "{velocity: 2}}, base: {pose: {xyz: [5, 0, 0], rpy: [0, 0, 3.141592653589793]}}, stopping: "
     "{reaction_ms: 40, path: kept, time_ms: 100}}\n";
@@ -147,7 +147,7 @@ std::vector<JointSample> standing(const Scene& scene, const std::string& prefix,
 
 // What no pair of the robot is about may be unknown: a robot, and what a camera sees.
 TEST(StoppingPairs, AreKnownWhileARobotOrACameraOfOtherPairsWasNeverHeard) {
-  const Scene beside_robot = left_scara_and(kRight, "", "  - {between: [right, third]}\n");
+  const Scene beside_robot = left_scara_and(kRightScara, "", "  - {between: [right, third]}\n");
   const Scene beside_camera = left_scara_and(
       "",
       "sensors: [{name: eye, points: /cam/points, depth_error: {constant: 0.01}, range: [0.3, 4], "
@@ -163,7 +163,7 @@ TEST(StoppingPairs, AreKnownWhileARobotOrACameraOfOtherPairsWasNeverHeard) {
 
 // The right finger is 0.9 m away, and may have come nearer at 0.5 m/s since it was heard.
 TEST(StoppingPairs, WithARobotThatIsLateCountItsLimitsInsteadOfItsStop) {
-  const Scene scene = left_scara_and(kRight, "",
+  const Scene scene = left_scara_and(kRightScara, "",
                                      "  - {between: [left, right]}\n  - {between: "
                                      "[third, ball]}\n");
   Monitor monitor(scene);
