@@ -70,6 +70,7 @@ class LimitedRobot {
   // The allocations of one update of the limiter, in this thread.
   [[nodiscard]] std::uint64_t allocations_of_update();
   bool acknowledge();
+  [[nodiscard]] const rclcpp::Node& node() const { return *node_; }
 
   std::unique_ptr<Daemon> daemon;
   std::filesystem::path folder;
