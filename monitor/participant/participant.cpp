@@ -197,7 +197,7 @@ std::shared_ptr<const Participant::OpenDomain> Participant::open_domain(const Dd
 }
 
 // Publisher and subscriber have the partition: endpoints of other partitions never match.
-Participant::Participant(const DdsOptions& options) {
+Participant::Participant(const DdsOptions& options, const std::string& ros_node) {
   const Domain domain = domain_of(options);
   where_ = where_joined(options, domain);
   how_to_reach_ = clearance::how_to_reach(options, domain.id);
@@ -205,6 +205,11 @@ Participant::Participant(const DdsOptions& options) {
   participant_ = check_dds(dds_create_participant(domain_->number, nullptr, nullptr),
                            fmt::format("joining {}", where_));
   make_publisher_and_subscriber(options.partition);
+  if (!ros_node.empty() && partition_.empty()) {
+    node_ = std::make_unique<RosNode>(participant_, ros_node, [this] {
+      return make_ros_writer(kRosEntities, "ros_discovery_info");
+    });
+  }
 }
 
 Participant::Participant(dds_entity_t participant, const std::string& partition)
@@ -292,12 +297,20 @@ dds_entity_t Participant::partner_reader(TopicKind kind, const std::string& name
 dds_entity_t Participant::ros_reader(const RosType& type, const std::string& name,
                                      const dds_listener_t* listener) {
   const Qos qos = ros_qos(type, type.is_reliable, type.depth);
-  return check_dds(
+  const dds_entity_t reader = check_dds(
       dds_create_reader(subscriber_, make_topic(*type.descriptor, name), qos.get(), listener),
       fmt::format("making a reader of {}", name));
+  if (node_) node_->add_reader(reader);
+  return reader;
 }
 
 dds_entity_t Participant::ros_writer(const RosType& type, const std::string& name) {
+  const dds_entity_t writer = make_ros_writer(type, name);
+  if (node_) node_->add_writer(writer);
+  return writer;
+}
+
+dds_entity_t Participant::make_ros_writer(const RosType& type, const std::string& name) {
   const Qos qos = ros_qos(type, true, type.writer_depth);
   return check_dds(
       dds_create_writer(publisher_, make_topic(*type.descriptor, name), qos.get(), nullptr),

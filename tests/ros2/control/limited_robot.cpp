@@ -130,8 +130,10 @@ Daemon::Daemon(const std::filesystem::path& folder, const std::string& stopping)
     throw std::runtime_error("clearanced does not start");
 }
 
+void Daemon::signal(int number) const { ::kill(pid_, number); }
+
 std::chrono::steady_clock::time_point Daemon::kill() const {
-  ::kill(pid_, SIGKILL);
+  signal(SIGKILL);
   return std::chrono::steady_clock::now();
 }
 

@@ -38,6 +38,7 @@ class Daemon {
   ~Daemon();
   Daemon(const Daemon&) = delete;
   Daemon& operator=(const Daemon&) = delete;
+  void signal(int number) const;
   // SIGKILL. Returns a time after which the process has done nothing.
   std::chrono::steady_clock::time_point kill() const;
 
@@ -49,7 +50,7 @@ struct RobotOptions {
   std::string interface = "velocity";
   double slide = 0.0;  // where it begins, m
   std::string limits = "stop_at: 0.1\n    slow_from: 0.4";
-  std::string reports_count_for = "0.3";
+  std::string reports_count_for = "0.1";
   std::string stopping = {};  // of the daemon's cell
 };
 
@@ -70,6 +71,7 @@ class LimitedRobot {
   // The allocations of one update of the limiter, in this thread.
   [[nodiscard]] std::uint64_t allocations_of_update();
   bool acknowledge();
+  [[nodiscard]] const rclcpp::Node& node() const { return *node_; }
 
   std::unique_ptr<Daemon> daemon;
   std::filesystem::path folder;

@@ -1,6 +1,7 @@
 // The limiter in the loop: what the robot does, judged by the states of its hardware and by the
 // true distance of its hand. A test may take longer on a busy machine, and then says the same.
 #include <gtest/gtest.h>
+#include <signal.h>
 #include <stdlib.h>
 #include <unistd.h>
 
@@ -75,8 +76,9 @@ TEST(LimiterInTheLoop, LetsPositionsPassToTheBitWhereTheWallIsFar) {
   EXPECT_GT(passed, 500);
 }
 
-// At velocity v (d - 0.1) / 0.3, it needs 0.3 / v ln(10) s from 0.4 m to 0.13 m. Reports that are
-// late by less than 0.3 s let the robot be earlier by no more than that.
+// At velocity v (d - 0.1) / 0.3, it needs 0.3 / v ln(10) s from 0.4 m to 0.13 m. A report counts
+// for 0.1 s, and its positions are not older than that, so the robot may be earlier by 0.2 s. A
+// delay below 0.3 / v / e s does not let it overshoot.
 TEST(LimiterInTheLoop, SlowsBetweenTheMarginsAndKeepsTheLesserOne) {
   LimitedRobot robot({.slide = 0.5});
   constexpr double kVelocity = 0.4;
@@ -90,8 +92,9 @@ TEST(LimiterInTheLoop, SlowsBetweenTheMarginsAndKeepsTheLesserOne) {
         return robot.distance() < 0.13;
       },
       30.0));
-  EXPECT_GT(slowed_s, 0.3 / kVelocity * std::log(10.0) - 0.3);
-  EXPECT_EQ(robot.observed().cause, kDistance);
+  EXPECT_GT(slowed_s, 0.3 / kVelocity * std::log(10.0) - 0.2);
+  EXPECT_TRUE(robot.step_until(
+      forward, [&] { return robot.observed().cause == kDistance; }, 30.0));
   for (int k = 0; k < 3000; ++k) {
     robot.step(forward());
     ASSERT_GT(robot.distance(), 0.1) << k;
@@ -135,8 +138,7 @@ void hold_after_the_end(LimitedRobot& robot, std::chrono::milliseconds counts_fo
   }
 }
 
-void hold_and_resume(RobotOptions options, const std::function<Values()>& references) {
-  options.reports_count_for = "0.1";
+void hold_and_resume(const RobotOptions& options, const std::function<Values()>& references) {
   LimitedRobot robot(options);
   const auto is_fast = [&] { return is_free(robot) && speed(robot) > 0.15; };
   ASSERT_TRUE(robot.step_until(references, is_fast, 30.0));
@@ -189,7 +191,7 @@ TEST(LimiterInTheLoop, ObeysTheScalingOfStopsAndKeepsTheirMargin) {
     fastest = std::max(fastest, speed(robot));
     ASSERT_GT(robot.distance(), 0.05) << k;
   }
-  EXPECT_GT(fastest, 0.39);
+  EXPECT_GT(fastest, 0.2);
   EXPECT_LT(robot.distance(), 0.15);
   for (int k = 0; k < 2000; ++k) {
     robot.step({0.4, 0.0});
@@ -197,23 +199,28 @@ TEST(LimiterInTheLoop, ObeysTheScalingOfStopsAndKeepsTheirMargin) {
   }
 }
 
-// A second daemon of the cell writes some reports before it hears the first one and ends.
-TEST(LimiterInTheLoop, HoldsAfterASecondDaemonUntilAPersonAcknowledges) {
+// While the daemon stands still, another one of the cell is heard. When it goes on, both are, until
+// the later one hears the other and ends: by then, several reports are of another source.
+TEST(LimiterInTheLoop, HoldsAfterReportsOfTwoDaemonsUntilAPersonAcknowledges) {
   LimitedRobot robot({.slide = -3.0});
   const auto still = [] { return Values{}; };
+  const auto frees = [&] { return is_free(robot); };
   const auto is_held = [&] { return robot.observed().cause == kHeld; };
-  ASSERT_TRUE(robot.step_until(
-      still, [&] { return is_free(robot); }, 30.0));
-  for (int tries = 0; tries < 100 && !is_held(); ++tries) {
+  const auto is_silent = [&] { return robot.observed().cause == kNotRelied; };
+  ASSERT_TRUE(robot.step_until(still, frees, 30.0));
+  for (int tries = 0; tries < 20 && !is_held(); ++tries) {
+    robot.daemon->signal(SIGSTOP);
+    ASSERT_TRUE(robot.step_until(still, is_silent, 30.0));
     const Daemon second(robot.folder, robot.stopping);
-    robot.step_until(still, is_held, 0.5);
+    ASSERT_TRUE(robot.step_until(still, frees, 30.0));
+    robot.daemon->signal(SIGCONT);
+    robot.step_until(still, is_held, 0.3);
   }
   ASSERT_TRUE(is_held());
   ASSERT_FALSE(robot.step_until(
-      still, [&] { return !is_held(); }, 1.0));
+      still, [&] { return !is_held(); }, 0.5));
   ASSERT_TRUE(robot.acknowledge());
-  EXPECT_TRUE(robot.step_until(
-      still, [&] { return is_free(robot); }, 30.0));
+  EXPECT_TRUE(robot.step_until(still, frees, 30.0));
 }
 
 TEST(LimiterInTheLoop, AllocatesNothingInAnUpdate) {
