@@ -1,5 +1,6 @@
 // What requests, matrices, attached bodies and changes of the world mean to the plug-in.
 #include "arm_scene.hpp"
+#include "shape_parts.hpp"
 
 #include <gtest/gtest.h>
 #include <octomap/octomap.h>
@@ -307,6 +308,12 @@ TEST(MoveItShapes, OctreesAreTheirOccupiedLeavesAsTheyAreNow) {
   EXPECT_FALSE(collides(scene));
   tree->updateNode(octomap::point3d(0.05F, 0.05F, 0.05F), true);
   EXPECT_TRUE(collides(scene));
+}
+
+TEST(MoveItShapes, MeshesOfOneContentAreSplitOnce) {
+  const auto first = clearance_moveit::parts_of(wedge_thing({0.1, 0.2, 0.3}).shape);
+  EXPECT_EQ(first, clearance_moveit::parts_of(wedge_thing({0.1, 0.2, 0.3}).shape));
+  EXPECT_NE(first, clearance_moveit::parts_of(wedge_thing({0.1, 0.2, 0.31}).shape));
 }
 
 TEST(MoveItShapes, WithoutABodyCollideWithEverything) {

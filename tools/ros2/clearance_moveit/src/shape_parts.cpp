@@ -6,6 +6,7 @@
 #include <core/shapes.hpp>
 #include <cstddef>
 #include <cstdint>
+#include <deque>
 #include <map>
 #include <mutex>
 #include <span>
@@ -151,6 +152,54 @@ class PartsCache {
   std::size_t left_ = 64;  // after the last removal of shapes that are gone
 };
 
+// The last meshes of the process by their content. A message about an object that was there before
+// brings a new shape with the same mesh, and to split it again may take seconds.
+class SplitMeshes {
+ public:
+  std::shared_ptr<const ShapeParts> find(const shapes::Mesh& mesh) {
+    const std::lock_guard lock(mutex_);
+    const auto found = std::ranges::find_if(last_, [&](const Entry& entry) {
+      return std::ranges::equal(entry.vertices, vertices(mesh)) &&
+             std::ranges::equal(entry.corners, corners(mesh));
+    });
+    return found == last_.end() ? nullptr : found->parts;
+  }
+  void keep(const shapes::Mesh& mesh, const std::shared_ptr<const ShapeParts>& parts) {
+    const auto points = vertices(mesh);
+    const auto triangles = corners(mesh);
+    const std::lock_guard lock(mutex_);
+    last_.push_front({{points.begin(), points.end()}, {triangles.begin(), triangles.end()}, parts});
+    if (last_.size() > kMost) last_.pop_back();
+  }
+
+ private:
+  static constexpr std::size_t kMost = 256;
+  struct Entry {
+    std::vector<double> vertices;
+    std::vector<unsigned int> corners;
+    std::shared_ptr<const ShapeParts> parts;
+  };
+  static std::span<const double> vertices(const shapes::Mesh& mesh) {
+    return {mesh.vertices, 3 * std::size_t{mesh.vertex_count}};
+  }
+  static std::span<const unsigned int> corners(const shapes::Mesh& mesh) {
+    return {mesh.triangles, 3 * std::size_t{mesh.triangle_count}};
+  }
+
+  std::mutex mutex_;
+  std::deque<Entry> last_;
+};
+
+std::shared_ptr<const ShapeParts> shared_parts(const shapes::Shape& shape) {
+  static SplitMeshes meshes;
+  if (shape.type != shapes::MESH) return std::make_shared<const ShapeParts>(make_parts(shape));
+  const auto& mesh = static_cast<const shapes::Mesh&>(shape);
+  if (auto found = meshes.find(mesh)) return found;
+  const auto made = std::make_shared<const ShapeParts>(make_parts(shape));
+  meshes.keep(mesh, made);
+  return made;
+}
+
 }  // namespace
 
 std::shared_ptr<const ShapeParts> parts_of(const shapes::ShapeConstPtr& shape, double scale,
@@ -160,11 +209,11 @@ std::shared_ptr<const ShapeParts> parts_of(const shapes::ShapeConstPtr& shape, d
   if (auto found = cache.find(key)) return found;
   std::shared_ptr<const ShapeParts> made;
   if (scale == 1.0 && padding == 0.0) {
-    made = std::make_shared<const ShapeParts>(make_parts(*shape));
+    made = shared_parts(*shape);
   } else {
     const std::unique_ptr<shapes::Shape> padded(shape->clone());
     padded->scaleAndPadd(scale, padding);
-    made = std::make_shared<const ShapeParts>(make_parts(*padded));
+    made = shared_parts(*padded);
   }
   cache.keep(key, made);
   return made;

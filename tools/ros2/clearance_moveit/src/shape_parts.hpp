@@ -37,8 +37,8 @@ struct ShapeParts {
       fault;  // not empty: nothing stands for the shape, so every check of it is a collision
 };
 
-// Returns the parts of a shape with MoveIt's own scale and padding (Shape::scaleAndPadd). Meshes
-// are split once for each process and shape, which may take seconds.
+// Returns the parts of a shape with MoveIt's own scale and padding (Shape::scaleAndPadd). To
+// split a mesh may take seconds: the process keeps the parts of its last meshes by their content.
 [[nodiscard]] std::shared_ptr<const ShapeParts> parts_of(const shapes::ShapeConstPtr& shape,
                                                          double scale = 1.0, double padding = 0.0);
 
