@@ -291,7 +291,7 @@ bool Stops::bound_by_levers(const Inputs& inputs, const Report& report,
       const double enough = std::min(robot.question.far_enough, now.upper - kTolerance);
       known.is_enough = keeps(known.lower, margin) && known.lower >= enough;
     }
-    // One that is not known has no margin: unknown_pair() has found none with one.
+    // A pair that is not known counts for no stop: unknown_pair() would have ended this one.
     is_enough = is_enough && (known.is_enough || !is_known);
   }
   return is_enough;

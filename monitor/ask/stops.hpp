@@ -40,7 +40,7 @@ class Stops {
     std::uint32_t pair = 0;       // index into Scene::pairs
     std::uint32_t other = 0;      // object that may be late or unknown; Scene::objects
     std::uint32_t published = 0;  // index into Report::pairs, or kNone
-    double margin = 0.0;          // m
+    double margin = 0.0;          // m: the largest that a zone states for it; 0: none
     // What brings its bodies nearer to each other: these levers, and the motion of `tracked`.
     std::uint32_t first_lever = 0, end_lever = 0;
     std::uint32_t tracked = 0;  // neither fixed nor a link; Scene::objects, or kNone

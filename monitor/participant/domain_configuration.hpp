@@ -16,9 +16,9 @@ namespace clearance {
 // counts and means nothing.
 [[nodiscard]] std::string domain_configuration(const DdsOptions& options);
 
-// Added to the number of a domain, it names a second one of this process that is the same on the
-// wire: if another library has configured the domain, as rmw_cyclonedds does for ROS 2 nodes.
-// Settings of CYCLONEDDS_URI for the number alone do not count there.
+// A process can configure a domain once. If another library has done so, as rmw_cyclonedds does for
+// nodes, ours is the domain plus this number: the same one on the wire. Settings of CYCLONEDDS_URI
+// for the domain's number alone do not apply to it.
 constexpr std::uint32_t kSecondDomain = 0x10000;
 [[nodiscard]] std::string second_domain_configuration(const DdsOptions& options,
                                                       std::uint32_t domain);

@@ -54,8 +54,8 @@ struct WriterFacts {
 // Owns the domain's configuration, the participant and all endpoints made through it.
 class Participant {
  public:
-  // With a name, and in the default partition, it is a node of ROS 2 while it has endpoints of ROS
-  // 2's topics.
+  // With a name and in the default partition, the participant becomes a node of ROS 2 with its
+  // first endpoint of a topic of ROS 2.
   explicit Participant(const DdsOptions& options, const std::string& ros_node = {});
   // Makes endpoints in a participant that its owner deletes after this.
   Participant(dds_entity_t participant, const std::string& partition);

@@ -11,7 +11,7 @@ namespace {
 
 using Gid = rmw_dds_common_msg_dds__Gid_;
 
-// The ids of those that exist; the others are left out of the list, too.
+// Returns the ids of endpoints that exist, and erases the others.
 std::vector<Gid> ids_of(std::vector<dds_entity_t>& endpoints) {
   std::vector<Gid> ids;
   std::erase_if(endpoints, [&](dds_entity_t endpoint) {

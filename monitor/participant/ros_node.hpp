@@ -1,5 +1,5 @@
-// The node of ROS 2 that a participant is: `ros2 node list` and `ros2 topic info` name it with its
-// endpoints. Nodes tell each other on the topic ros_discovery_info.
+// Announces the endpoints of a participant on ros_discovery_info, so that `ros2 node list` and
+// `ros2 topic info` show it as a node.
 #pragma once
 
 #include <dds/dds.h>
@@ -19,8 +19,8 @@ class RosNode {
   RosNode(const RosNode&) = delete;
   RosNode& operator=(const RosNode&) = delete;
 
-  // Tells other nodes about one more endpoint, and no more about those that were deleted since. Any
-  // thread. Where DDS Security denies the topic, the program is no node, and all else goes on.
+  // Announces one more endpoint, and drops those that were deleted since. Any thread may call this.
+  // If DDS Security denies the topic, nothing is announced, and all else goes on.
   void add_reader(dds_entity_t reader) { add(readers_, reader); }
   void add_writer(dds_entity_t writer) { add(writers_, writer); }
 

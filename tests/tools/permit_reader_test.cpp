@@ -1,5 +1,5 @@
-// What the limiter of ros2_control is permitted beside a daemon. Another reader of the same reports
-// says what should be.
+// Permits of the reader beside a daemon. The oracle: closed forms, as the box stands at a known
+// height.
 #include "tools/ros2/clearance_control/permit_reader.hpp"
 
 #include <gmock/gmock.h>
@@ -156,7 +156,7 @@ TEST_F(PermitReaderTest, HoldsAfterTheDaemonIsKilledAndUntilAnotherOneIsHeard) {
   daemon.wait();
   const std::int64_t end_ns = client::monotonic_ns();
   ASSERT_TRUE(test::eventually([&] { return !is_relied_on(reader->newest()); }));
-  // No report came after the end, so none counts for longer than its time after that.
+  // The last report came before the end, so after its lifetime none counts.
   EXPECT_FALSE(passes(reader->newest()));
   EXPECT_EQ(reader->newest().error(end_ns + options.stream.period.count() + 1),
             ReportError::kSilent);

@@ -114,7 +114,7 @@ TEST(StoppingPairs, OfAnObjectThatIsTakenAwayLimitNothing) {
   EXPECT_TRUE(std::isnan(report.pairs.at(0).stop_lower));
 }
 
-// A left arm beside a ball, and what `rest` has besides.
+// A left arm beside a ball. `robots`, `sections` and `pairs` are texts that are added to the cell.
 Scene left_scara_and(const std::string& robots, const std::string& sections,
                      const std::string& pairs) {
   const test::ScratchFolder folder;

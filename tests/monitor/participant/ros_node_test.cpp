@@ -62,7 +62,7 @@ class RosNodeTest : public testing::Test {
   Sample<Info> message;
 };
 
-TEST_F(RosNodeTest, NamesItsEndpointsOfRosTopicsUntilTheyAreDeleted) {
+TEST_F(RosNodeTest, NamesItsEndpointsOfRosTopicsAndForgetsDeletedOnesWithTheNextOne) {
   const dds_entity_t joints = node.ros_reader(kRosJointState, "rt/joint_states");
   const dds_entity_t number = node.ros_writer(kRosFloat64, "rt/clearance/minimum_distance");
   EXPECT_TRUE(tells([&](const Info& info) {

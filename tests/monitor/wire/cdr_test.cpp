@@ -109,7 +109,7 @@ TYPED_TEST(Representations, OfBothVersionsAndByteOrdersAreReadAlike) {
     const std::vector<std::byte> expected(ours.begin(), ours.end());
     EXPECT_EQ(by_rules(*sample, kRepresentations[1]), expected) << "as we write";
     for (const CdrRepresentation& each : kRepresentations) {
-      // Bytes of Cyclone's reader are checked, and are not swapped.
+      // Little-endian bytes of Cyclone's reader are read in place, all others are put in order.
       for (const CdrBytes origin : {CdrBytes::kUnchecked, CdrBytes::kOfReader}) {
         ASSERT_TRUE(decoder.decode(by_rules(*sample, each), came, origin)) << int{each.id};
         const auto again = encoder.encode(*came);

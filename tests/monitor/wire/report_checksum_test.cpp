@@ -158,7 +158,7 @@ TEST(ReportChecksum, OfAReportIsThatOfItsMessageAndCountsEachOfItsPairs) {
   from_wire(*message, report);
   EXPECT_EQ(checksum_of(report), checksum_of(*message));
   message->publish_ns ^= 1;
-  EXPECT_EQ(checksum_of(report), checksum_of(*message)) << "the sender does not count";
+  EXPECT_EQ(checksum_of(report), checksum_of(*message)) << "the time of publication does not count";
   for (PairReport& pair : report.pairs) {
     const std::uint64_t before = checksum_of(report);
     pair.swept_lower = 0.125;

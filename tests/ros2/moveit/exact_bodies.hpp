@@ -2,7 +2,7 @@
 //
 // Two polyhedra that are apart are nearest between a vertex and a triangle, or between two edges.
 // Otherwise the penetration depth is the least overlap along the normals of all faces and the
-// products of all pairs of edges (the theorem of separating axes). A ball is a point with a radius.
+// cross products of all pairs of edges (separating axis theorem). A ball is a point with a radius.
 // Nothing of the product is used.
 #pragma once
 

@@ -38,9 +38,9 @@ class Limiter {
   void update(std::span<const double> references, const Permitted& permitted, double dt_s,
               std::span<double> commands) noexcept;
 
-  // The commands of the last update were the references.
+  // Returns true if the last commands were the references.
   [[nodiscard]] bool passes() const noexcept { return passes_; }
-  // The largest share of its max_velocity that a joint was told.
+  // Returns the largest |velocity| / max_velocity of the last commands.
   [[nodiscard]] double speed() const noexcept { return speed_of(velocities_); }
 
  private:

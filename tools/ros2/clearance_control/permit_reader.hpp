@@ -21,7 +21,7 @@ namespace clearance_control {
 enum class Cause : std::uint8_t {
   kNone = 0,
   kNotRelied = 1,  // fail_safe() of the client library
-  kHeld = 2,       // the same until it is acknowledged, as is_held() says
+  kHeld = 2,       // two faulty messages came; ends after acknowledge()
   kUnknown = 3,    // a figure is unknown, late or not certified, or no pair or zone has that name
   kDistance = 4,   // below slow_from
   kZone = 5,       // a zone is active
@@ -45,11 +45,11 @@ struct Permit {
   bool has_separations = false;
   double scaling = 0.0;     // by distances and zones, 0 to 1
   double of_present = 0.0;  // share of the present speed, by the daemon's scaling, 0 to 1
-  // By monotonic_ns(): the positions that the report has used are not older.
+  // The positions in the report are at most as old as this time, by monotonic_ns().
   std::int64_t since_ns = 0;
   Cause cause = Cause::kUnknown;
 
-  // Why no report may be relied on now; kGood: the permit counts.
+  // Returns why no report may be relied on now; kGood: the permit counts.
   [[nodiscard]] clearance::ReportError error(std::int64_t at_ns) const noexcept;
   // The cause with regard to that.
   [[nodiscard]] Cause cause_at(std::int64_t at_ns) const noexcept;

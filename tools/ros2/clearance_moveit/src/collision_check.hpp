@@ -11,7 +11,8 @@
 
 namespace clearance_moveit {
 
-// Parts that are not certified disjoint collide. A request counts across calls, as `result` does.
+// Parts that are not certified disjoint collide. The contacts that `result` has already count
+// towards the limits of the request.
 class CollisionCheck {
  public:
   CollisionCheck(const collision_detection::CollisionRequest& request,
@@ -33,7 +34,7 @@ class CollisionCheck {
   bool done_ = false;
 };
 
-// Between two bodies that are apart, the depth is 0.
+// Makes MoveIt's contact of an answer. The depth is 0 if the bodies are apart.
 [[nodiscard]] collision_detection::Contact contact_of(const Found& found, const Owner& a,
                                                       const Owner& b);
 

@@ -114,7 +114,7 @@ void CollisionEnv::updatedPaddingOrScaling(const std::vector<std::string>& links
   }
 }
 
-// With their places in the world, or in the frames of the links that carry them.
+// Returns the parts in the world, or in the frames of the links that carry them.
 PosedParts CollisionEnv::robot_at(const RobotState& state, bool in_links) const {
   PosedParts robot;
   robot.parts.reserve(2 * link_shapes_.size());

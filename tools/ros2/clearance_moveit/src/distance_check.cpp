@@ -9,7 +9,7 @@ namespace clearance_moveit {
 
 namespace types = collision_detection::DistanceRequestTypes;
 
-// Only pairs whose boxes are close enough to count.
+// Returns the pairs whose boxes are close enough to count.
 std::vector<DistanceCheck::Candidate> DistanceCheck::candidates(const PosedParts& a,
                                                                 const PosedParts& b) const {
   const double within =
@@ -19,7 +19,7 @@ std::vector<DistanceCheck::Candidate> DistanceCheck::candidates(const PosedParts
   for (std::size_t i = 0; i < a.parts.size(); ++i) {
     for (std::size_t j = &a == &b ? i + 1 : 0; j < b.parts.size(); ++j) {
       if (&a == &b && a.parts[i].owner == b.parts[j].owner) continue;
-      // Nothing bounds how deep bodies overlap whose boxes do.
+      // If the boxes overlap, they do not bound how deep the bodies do.
       const double between = gap(a.boxes[i], b.boxes[j]);
       const double apart = between > 0.0 ? between : -std::numeric_limits<double>::infinity();
       if (apart < within) all.push_back({apart, i, j});

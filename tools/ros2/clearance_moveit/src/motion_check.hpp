@@ -25,7 +25,7 @@ struct MotionRequest {
 
 // Every joint moves linearly from one state to the other, a continuous joint along the shorter arc.
 // `robot` has the parts at `from`; `links` has the same parts in the frames of their links. Pairs
-// that a function decides on count as checked. Returns why there is no verdict: a sentence.
+// that a function decides on count as checked. If there is no verdict, returns the reason as text.
 [[nodiscard]] std::variant<MotionVerdict, std::string> check_motion(
     const moveit::core::RobotState& from, const moveit::core::RobotState& to,
     const PosedParts& robot, const PosedParts& links, const PosedParts& world, PairFilter& filter,

@@ -188,7 +188,7 @@ std::variant<Scene, std::string> motion_scene(const moveit::core::RobotModel& mo
     }
   }
   if (world.parts.size() > kMostParts)
-    return "more than " + std::to_string(kMostParts) + " parts are near the robot";
+    return "more than " + std::to_string(kMostParts) + " parts are in the world";
   Scene scene;
   scene.name = model.getName();
   scene.revision = 1;

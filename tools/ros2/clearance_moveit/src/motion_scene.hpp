@@ -33,8 +33,8 @@ namespace clearance_moveit {
                                                                const PosedParts& world,
                                                                PairFilter& filter);
 
-// The objects are the owners of the world, then those of the robot, in their order. Returns what is
-// wrong: a sentence.
+// The objects are the owners of the world, then those of the robot, in their order. Otherwise
+// returns what is wrong as text.
 [[nodiscard]] std::variant<clearance::Scene, std::string> motion_scene(
     const moveit::core::RobotModel& model, std::span<const Pose> rests, const PosedParts& links,
     const PosedParts& world, std::vector<clearance::ObjectPair> pairs);

@@ -1,4 +1,4 @@
-// The log of this package, as MoveIt names its own.
+// The logger moveit.core.clearance_moveit.
 #pragma once
 
 #include <moveit/utils/logger.hpp>

@@ -39,8 +39,8 @@ PairFilter::Decision PairFilter::look_up(const Owner& a, const Owner& b) const {
     };
     if (!is_active(a) && !is_active(b)) return Decision::kLeftOut;
   }
-  // A link may touch what lists it, and so may another attached body. Those of one link are still
-  // to each other.
+  // A link may touch an attached body that names it as a touch link, and so may another attached
+  // body. Two bodies that are attached to one link do not move relative to each other.
   const bool both_attached = a.attached != nullptr && b.attached != nullptr;
   if (both_attached && a.link == b.link) return Decision::kLeftOut;
   if ((both_attached || b.type == ROBOT_LINK) && may_touch(a, b.name)) return Decision::kLeftOut;

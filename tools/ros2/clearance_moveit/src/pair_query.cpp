@@ -55,7 +55,7 @@ unsigned sorted_children(const octomap::OcTree& tree, const Cube& parent, const 
   return count;
 }
 
-Box seen_from(const Pose& world_from_part, const Box& box) {
+Box box_in_part(const Pose& world_from_part, const Box& box) {
   Pose part_from_world;
   part_from_world.orientation = world_from_part.orientation.conjugate();
   part_from_world.position = -(part_from_world.orientation * world_from_part.position);

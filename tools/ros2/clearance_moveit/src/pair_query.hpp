@@ -30,8 +30,9 @@ template <class Visit>
 bool visit_leaves(const PosedPart& octree, const Box& near, const double& within,
                   const Visit& visit);
 
-// Calls visit(found) for every pair of bodies of two parts whose boxes are within `within`, m. If
-// nothing stands for one of them, the only answer is a collision. The visitor returns false to end.
+// Calls visit(found) for each pair of bodies of two parts, but for leaves of octrees that are
+// farther than `within`, m. If nothing stands for one of the parts, the only answer is a collision.
+// The visitor returns false to end.
 template <class Visit>
 bool query_parts(const PosedPart& a, const Box& box_a, const PosedPart& b, const Box& box_b,
                  const double& within, Depth depth, const Visit& visit);
@@ -51,7 +52,7 @@ unsigned sorted_children(const octomap::OcTree& tree, const Cube& parent, const 
 // The root; without a node if the tree is empty.
 [[nodiscard]] Cube root_of(const octomap::OcTree& tree);
 // A box in the frame of the part that contains one in the world.
-[[nodiscard]] Box seen_from(const Pose& world_from_part, const Box& box);
+[[nodiscard]] Box box_in_part(const Pose& world_from_part, const Box& box);
 
 template <class Visit>
 bool visit_below(const PosedPart& octree, const Cube& cube, const Box& near, const double& within,
@@ -75,7 +76,7 @@ bool visit_leaves(const PosedPart& octree, const Box& near, const double& within
                   const Visit& visit) {
   const Cube root = root_of(*octree.shape->octree);
   if (root.node == nullptr) return true;
-  return visit_below(octree, root, seen_from(octree.world_from_part, near), within, visit);
+  return visit_below(octree, root, box_in_part(octree.world_from_part, near), within, visit);
 }
 
 template <class Visit>

@@ -21,8 +21,8 @@ using clearance::Pose;
 struct Owner {
   std::string name;
   collision_detection::BodyType type = collision_detection::BodyTypes::WORLD_OBJECT;
-  const moveit::core::LinkModel* link = nullptr;         // that it is, or is attached to
-  const moveit::core::AttachedBody* attached = nullptr;  // of attached bodies
+  const moveit::core::LinkModel* link = nullptr;  // itself, or what it is attached to; null: world
+  const moveit::core::AttachedBody* attached = nullptr;  // null: none
 
   bool operator==(const Owner&) const = default;
 };
@@ -31,7 +31,7 @@ struct PosedPart {
   std::shared_ptr<const ShapeParts> shape;
   // The only body of the part; null: the part is a whole octree, or nothing stands for the shape.
   const clearance::ConvexBody* body = nullptr;
-  Pose world_from_part;
+  Pose world_from_part;  // or from the frame of its link, where a function says so
   std::uint32_t owner = 0;
 
   bool operator==(const PosedPart& other) const {

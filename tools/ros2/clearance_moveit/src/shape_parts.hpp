@@ -26,7 +26,7 @@ struct Box {
 }
 
 struct ShapeParts {
-  // In the frame of the shape. Their union is the shape, or contains it if it is a mesh.
+  // In the frame of the shape, which their union contains. Empty: see `fault`. For octrees, below.
   std::vector<clearance::ConvexBody> bodies;
   std::vector<Box> boxes;   // one around each body
   double mesh_error = 0.0;  // m: no point of the bodies is farther than this from the mesh
