@@ -310,6 +310,16 @@ TEST(MoveItShapes, OctreesAreTheirOccupiedLeavesAsTheyAreNow) {
   EXPECT_TRUE(collides(scene));
 }
 
+TEST(MoveItStates, WithoutNumbersCollide) {
+  ArmScene scene;
+  scene.add("thing", box_thing({0.1, 0.1, 0.1}), Eigen::Vector3d(5.0, 0.0, 0.0));
+  EXPECT_FALSE(collides(scene));
+  scene.set(0.0, std::numeric_limits<double>::quiet_NaN(), 0.0);
+  EXPECT_TRUE(collides(scene));
+  EXPECT_TRUE(collides_itself(scene));
+  EXPECT_LE(distance(scene), 0.0);
+}
+
 TEST(MoveItShapes, MeshesOfOneContentAreSplitOnce) {
   const auto first = clearance_moveit::parts_of(wedge_thing({0.1, 0.2, 0.3}).shape);
   EXPECT_EQ(first, clearance_moveit::parts_of(wedge_thing({0.1, 0.2, 0.3}).shape));

@@ -1,6 +1,7 @@
 #include "pair_query.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <cstddef>
 
 namespace clearance_moveit {
@@ -24,7 +25,7 @@ Found query(const clearance::ConvexBody& a, const Pose& world_from_a,
   Found found;
   found.collides = !(r.lower > 0.0);
   found.distance = !found.collides          ? r.lower
-                   : depth == Depth::kAsked ? std::min(r.distance, 0.0)
+                   : depth == Depth::kAsked ? std::fmin(r.distance, 0.0)
                                             : 0.0;
   const clearance::Mat3 rotation = clearance::rotation_matrix(world_from_a.orientation);
   found.normal = rotation * r.normal;
