@@ -36,7 +36,12 @@ struct Machine {
     acceleration = 0.0;
     for (std::size_t i = 0; i < commands.size(); ++i) {
       velocities[i] = kind == Kind::kVelocity ? commands[i] : (commands[i] - before[i]) / dt_s;
-      const double change = std::abs(velocities[i] - velocities_before[i]);
+      // A velocity that slows down by itself may do so faster.
+      double from = velocities_before[i];
+      if (kind == Kind::kVelocity && references[i] * from >= 0.0 &&
+          std::abs(references[i]) < std::abs(from))
+        from = references[i];
+      const double change = std::abs(velocities[i] - from);
       acceleration = std::max(acceleration, change / dt_s / kLimits[i].deceleration);
     }
   }
@@ -92,7 +97,7 @@ TEST_P(EachKind, KeepsTheStatedDecelerationAndSpeedWhateverComes) {
       machine.update(references, permitted, dt_s);
       held_s = permitted.scaling == 0.0 ? held_s + dt_s : 0.0;
       ASSERT_LE(machine.speed(), 1.0 + 1e-9) << run << ' ' << k;
-      if (!passed || !machine.limiter.passes()) {
+      if ((!passed || !machine.limiter.passes())) {
         ASSERT_LE(machine.acceleration, 1.0 + 1e-6) << run << ' ' << k;
       }
       // From full speed, the slower joint needs 0.5 s.
@@ -108,7 +113,8 @@ TEST_P(EachKind, StandsAfterItsSpeedOverTheDecelerationAndKeepsItsDirection) {
   double t_s = 0.0;
   const auto references = [&] {
     t_s += kStep;
-    return GetParam() == Kind::kPosition ? Values{0.6 * t_s, -0.8 * t_s} : Values{0.6, -0.8};
+    const double along = t_s < 0.5 ? t_s * t_s : t_s - 0.25;  // it begins at rest
+    return GetParam() == Kind::kPosition ? Values{0.6 * along, -0.8 * along} : Values{0.6, -0.8};
   };
   while (t_s < 1.0) machine.update(references());
   ASSERT_TRUE(machine.limiter.passes());
@@ -124,17 +130,68 @@ TEST_P(EachKind, StandsAfterItsSpeedOverTheDecelerationAndKeepsItsDirection) {
   EXPECT_EQ(machine.commands, stands);
 }
 
+// The motion waits while it is held, and begins again where the joints stand.
 TEST_P(EachKind, ResumesWithoutAJumpAndPassesAgain) {
   Machine machine(GetParam());
   int k = 0;
   for (; k < 2000; ++k) machine.update(swing(k * kStep), k < 1000 ? kFree : kHold);
   ASSERT_EQ(machine.speed(), 0.0);
-  for (; k < 6000 && !machine.limiter.passes(); ++k) {
-    machine.update(swing(k * kStep));
-    ASSERT_LE(machine.acceleration, 1.0 + 1e-6) << k;
+  const Values stands = machine.commands;
+  const auto onwards = [&](double t_s) {
+    if (GetParam() == Kind::kVelocity) return swing(t_s);
+    return Values{stands[0] + 0.1 * (1.0 - std::cos(t_s)), stands[1] - 0.2 * (1.0 - std::cos(t_s))};
+  };
+  double t_s = 0.0;
+  for (k = 0; k < 4000 && !machine.limiter.passes(); ++k, t_s += kStep) {
+    machine.update(onwards(t_s));
+    ASSERT_TRUE(machine.acceleration <= 1.0 + 1e-6) << k;
   }
   EXPECT_TRUE(machine.limiter.passes());
-  EXPECT_EQ(machine.commands, swing((k - 1) * kStep));
+  EXPECT_EQ(machine.commands, onwards(t_s - kStep));
+}
+
+TEST(Limiter, FollowsVelocitiesThatSlowDownByThemselvesAtOnce) {
+  for (const Permitted& permitted : {kFree, Permitted{.scaling = 0.95}}) {
+    Machine machine(Kind::kVelocity);
+    for (int k = 0; k < 1000; ++k) machine.update({0.9, -0.4}, permitted);
+    machine.update({0.3, -0.4}, permitted);
+    EXPECT_LE(machine.commands[0], 0.3);
+    machine.update({0.0, 0.0}, permitted);
+    EXPECT_EQ(machine.speed(), 0.0);
+  }
+}
+
+// An L: first one joint, then the other one. A hold in the middle must not cut the corner.
+TEST(Limiter, HoldsPositionsUntilTheirReferenceIsWhereTheJointsStand) {
+  Machine machine(Kind::kPosition);
+  const auto path = [](double t_s) {
+    const double along = 0.5 * t_s;
+    return Values{std::min(along, 0.5), std::max(0.0, along - 0.5)};
+  };
+  int k = 0;
+  for (; k < 500; ++k) machine.update(path(k * kStep));
+  for (; k < 1500; ++k) machine.update(path(k * kStep), kHold);
+  const Values stands = machine.commands;
+  EXPECT_LT(stands[0], 0.4);
+  for (; k < 2000; ++k) {
+    machine.update(path(k * kStep));
+    ASSERT_EQ(machine.commands, stands);
+    ASSERT_TRUE(machine.limiter.is_away());
+  }
+  for (int again = 0; again < 400; ++again) machine.update(stands);
+  EXPECT_FALSE(machine.limiter.is_away());
+  machine.update({stands[0] + 1e-4, stands[1]});
+  EXPECT_GT(machine.commands[0], stands[0]);
+}
+
+TEST(Limiter, HoldsAtPositionsThatNobodyCanMean) {
+  for (const double far : {5.0, -1e12, 3e305}) {
+    Machine machine(Kind::kPosition, {0.1, 0.2});
+    for (int k = 0; k < 100; ++k) machine.update({far, 0.2});
+    EXPECT_EQ(machine.commands, (Values{0.1, 0.2})) << far;
+    machine.update({0.1, 0.2}, kHold);
+    EXPECT_EQ(machine.commands, (Values{0.1, 0.2})) << far;
+  }
 }
 
 TEST_P(EachKind, HoldsAtAReferenceThatIsNoNumber) {
@@ -163,13 +220,22 @@ TEST_P(EachKind, AllocatesNothing) {
   EXPECT_EQ(clearance::allocations(), before);
 }
 
-// References are far beyond what the joints can do.
+// Velocities are far beyond what the joints can do, and positions run away.
 TEST_P(EachKind, KeepsToThePermittedSpeed) {
   for (const Permitted& permitted :
        {Permitted{0.5, 1.0}, Permitted{1.0, 0.25}, Permitted{0.3, 0.4}}) {
     Machine machine(GetParam());
-    for (int k = 0; k < 1000; ++k) machine.update({50.0, -3.0}, permitted);
-    EXPECT_NEAR(machine.speed(), std::min(permitted.scaling, permitted.most_speed), 1e-9);
+    const double most = std::min(permitted.scaling, permitted.most_speed);
+    double fastest = 0.0;
+    for (int k = 0; k < 1000; ++k) {
+      if (GetParam() == Kind::kVelocity)
+        machine.update({50.0, -3.0}, permitted);
+      else
+        machine.update({machine.commands[0] + 0.01, 0.0}, permitted);
+      fastest = std::max(fastest, machine.speed());
+    }
+    EXPECT_LE(fastest, most + 1e-9);
+    EXPECT_GE(fastest, 0.9 * most);
   }
 }
 
@@ -180,11 +246,15 @@ TEST(Limiter, ScalesVelocitiesInProportion) {
   EXPECT_NEAR(machine.commands[1], -0.2, 1e-12);
 }
 
-TEST(Limiter, FollowsPositionsNoFasterThanTheScaledLimit) {
-  Machine machine(Kind::kPosition);
-  for (int k = 0; k < 1000; ++k) machine.update({5.0, 0.0}, {.scaling = 0.25});
-  EXPECT_NEAR(machine.velocities[0], 0.25, 1e-9);
-  EXPECT_NEAR(machine.velocities[1], 0.0, 1e-9);
+TEST(Limiter, LetsPositionsPassThatAreSlowEnoughAndHoldsFasterOnes) {
+  for (const double speed : {0.2, 0.3}) {
+    Machine machine(Kind::kPosition);
+    for (int k = 0; k < 2000; ++k)
+      machine.update({speed * std::max(0.0, k * kStep - 0.5), 0.0}, {.scaling = 0.25});
+    EXPECT_EQ(machine.limiter.passes(), speed < 0.25);
+    EXPECT_EQ(machine.limiter.is_away(), speed > 0.25);
+    EXPECT_NEAR(machine.velocities[0], speed < 0.25 ? speed : 0.0, 1e-9);
+  }
 }
 
 TEST(Limiter, BeginsWhereTheJointsStand) {
@@ -194,8 +264,8 @@ TEST(Limiter, BeginsWhereTheJointsStand) {
   EXPECT_EQ(machine.speed(), 0.0);
 }
 
-TEST(Limiter, GoesToAFarPositionAndStandsThereWithoutOvershoot) {
-  for (const Values& far : {Values{0.5, -0.5}, Values{1.0, -0.1}, Values{0.1, -2.0}}) {
+TEST(Limiter, GoesToANearPositionAndStandsThereWithoutOvershoot) {
+  for (const Values& far : {Values{0.005, -0.01}, Values{0.01, -0.001}, Values{0.001, -0.02}}) {
     Machine machine(Kind::kPosition);
     for (int k = 0; k < 5000; ++k) {
       machine.update(far);

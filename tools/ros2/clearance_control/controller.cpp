@@ -20,7 +20,8 @@ constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 std::vector<double> one_for_each(const std::string& name, std::vector<double> values,
                                  std::size_t joints) {
   if (values.size() == 1) values.resize(joints, values.front());
-  const bool are_positive = std::ranges::all_of(values, [](double each) { return each > 0.0; });
+  const bool are_positive =
+      std::ranges::all_of(values, [](double each) { return each > 0.0 && std::isfinite(each); });
   if (values.size() != joints || !are_positive)
     throw std::invalid_argument(name + " has to have a value above 0, or one for each joint");
   return values;
@@ -78,13 +79,15 @@ void ClearanceLimiter::read_parameters() {
                         .pairs = get("pairs").as_string_array(),
                         .zones = get("zones").as_string_array(),
                         .obeys_scaling = get("obey_scaling").as_bool()};
-  options.stream.period =
-      std::chrono::nanoseconds(std::llround(1e9 * get("reports_count_for").as_double()));
+  const double count_for_s = get("reports_count_for").as_double();
+  if (!(count_for_s >= 0.0 && count_for_s <= 1.0))
+    throw std::invalid_argument("reports_count_for has to be a time from 0 to 1 s");
+  options.stream.period = std::chrono::nanoseconds(std::llround(1e9 * count_for_s));
   clearance::DdsOptions dds{.partition = get("partition").as_string(),
                             .interface = get("network").as_string()};
   if (const auto domain = get("domain").as_int(); domain >= 0)
     dds.domain = static_cast<std::uint32_t>(domain);
-  permits_ = std::make_unique<PermitReader>(
+  permits_ = std::make_shared<PermitReader>(
       dds, std::move(options), [logger = get_node()->get_logger()](const std::string& cause) {
         RCLCPP_INFO(logger, "what limits: %s", cause.c_str());
       });
@@ -101,9 +104,10 @@ CallbackReturn ClearanceLimiter::on_configure(const rclcpp_lifecycle::State&) {
   references_.assign(joints_.size(), kNaN);
   commands_.assign(joints_.size(), 0.0);
   acknowledge_ = get_node()->create_service<std_srvs::srv::Trigger>(
-      "~/acknowledge", [this](const std_srvs::srv::Trigger::Request::SharedPtr&,
-                              const std_srvs::srv::Trigger::Response::SharedPtr& response) {
-        permits_->acknowledge();
+      "~/acknowledge",
+      [permits = permits_](const std_srvs::srv::Trigger::Request::SharedPtr&,
+                           const std_srvs::srv::Trigger::Response::SharedPtr& response) {
+        permits->acknowledge();
         response->success = true;
       });
   return CallbackReturn::SUCCESS;
@@ -215,6 +219,7 @@ return_type ClearanceLimiter::update_and_write_commands(const rclcpp::Time&,
   Cause cause = Cause::kNone;
   const Permitted allowed = permitted(now_ns, cause);
   limiter_->update(references_, allowed, period.seconds(), commands_);
+  if (cause == Cause::kNone && limiter_->is_away()) cause = Cause::kAway;
   speeds_.add(now_ns, limiter_->speed());
   for (std::size_t i = 0; i < commands_.size(); ++i)
     static_cast<void>(command_interfaces_[i].set_value(commands_[i]));

@@ -65,7 +65,7 @@ class ClearanceLimiter : public controller_interface::ChainableControllerInterfa
   std::vector<std::string> joints_;
   std::string interface_;  // "position" or "velocity"
   std::optional<Limiter> limiter_;
-  std::unique_ptr<PermitReader> permits_;
+  std::shared_ptr<PermitReader> permits_;  // the service has it, too
   SpeedHistory speeds_;
   std::vector<double> references_, commands_;
   rclcpp::Service<std_srvs::srv::Trigger>::SharedPtr acknowledge_;

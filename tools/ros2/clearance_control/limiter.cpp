@@ -45,16 +45,37 @@ double Limiter::share_of_lag(double dt_s) const noexcept {
   return share;
 }
 
+// Tells whether the positions are farther from the commands than the joints go in that time: the
+// path to them is not known.
+bool Limiter::are_away(std::span<const double> references, double dt_s) const noexcept {
+  const double time_s = kCatchUp_s + 2.0 * dt_s;
+  for (std::size_t i = 0; i < commands_.size(); ++i)
+    if (std::abs(references[i] - commands_[i]) > limits_[i].max_velocity * time_s) return true;
+  return false;
+}
+
+// A joint whose velocity slows down by itself is followed at once: the limiter must not delay a
+// stop.
+void Limiter::slow_down_to(std::span<const double> references) noexcept {
+  for (std::size_t i = 0; i < velocities_.size(); ++i) {
+    const double now = velocities_[i], next = references[i];
+    if (now * next >= 0.0 && std::abs(next) < std::abs(now)) velocities_[i] = next;
+  }
+}
+
 // Fills in the wanted velocities: positions are followed at their own speed, and a lag is made up
 // for. Returns true if these velocities reach the references.
 bool Limiter::follow(std::span<const double> references, double dt_s) noexcept {
   const bool are_known =
       std::ranges::all_of(references, [](double value) { return std::isfinite(value); });
-  double share = are_known ? 1.0 : 0.0;
-  if (!are_known) {
+  is_away_ = are_known && kind_ == Kind::kPosition && are_away(references, dt_s);
+  double share = are_known && !is_away_ ? 1.0 : 0.0;
+  if (share == 0.0) {
     std::ranges::fill(wanted_, 0.0);
+    references_ = commands_;
   } else if (kind_ == Kind::kVelocity) {
     std::ranges::copy(references, wanted_.begin());
+    slow_down_to(references);
   } else {
     for (std::size_t i = 0; i < lag_.size(); ++i) lag_[i] = references_[i] - commands_[i];
     share = share_of_lag(dt_s);

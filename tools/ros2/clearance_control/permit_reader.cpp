@@ -60,7 +60,8 @@ const char* name(Cause cause) noexcept {
                                  "not known",
                                  "a distance",
                                  "a zone",
-                                 "the daemon's scaling"};
+                                 "the daemon's scaling",
+                                 "positions that are away from where the joints stand"};
   return kNames[static_cast<std::size_t>(cause)];
 }
 

@@ -26,6 +26,7 @@ enum class Cause : std::uint8_t {
   kDistance = 4,   // below slow_from
   kZone = 5,       // a zone is active
   kScaling = 6,    // the daemon's scaling is below 1
+  kAway = 7,       // positions are away from where the joints stand (Limiter::is_away())
 };
 [[nodiscard]] const char* name(Cause cause) noexcept;
 
