@@ -102,7 +102,7 @@ TEST(LimiterInTheLoop, SlowsBetweenTheMarginsAndKeepsTheLesserOne) {
   EXPECT_LT(robot.distance(), 0.11);
 }
 
-// It is held as soon as its references are faster than the distance permits.
+// Positions are held as soon as their references are faster than the distance permits.
 TEST(LimiterInTheLoop, HoldsPositionsThatAreTooFastBeforeTheMargin) {
   LimitedRobot robot({.interface = "position", .slide = 0.5});
   for (int k = 0; k < 6000; ++k) {
