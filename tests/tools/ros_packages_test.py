@@ -4,6 +4,7 @@ usage: ros_packages_test.py BUILD
 """
 
 import importlib.util
+import json
 import pathlib
 import re
 import subprocess
@@ -90,6 +91,50 @@ def launch_file(name="clearance"):
     return module
 
 
+def named_topics():
+    """The type of each topic, as the pages of idl/ have it, and of the markers that show the scene."""
+    rows = "".join((ROOT / "idl" / page).read_text() for page in ("README.md", "ROS.md"))
+    topics = {name: f"clearance_msgs/msg/{kind}" for name, kind in re.findall(r"^\| `(clearance/\w+)` \| `(\w+)`", rows, re.MULTILINE)}
+    topics.update({name: kind.replace("/", "/msg/") for name, kind in re.findall(r"^\| `rt(/[\w/]+)` \| `(\w+/\w+)`", rows, re.MULTILINE)})
+    header = (ROOT / "monitor/visual/cell_markers.hpp").read_text()
+    topics.update({name: "visualization_msgs/msg/MarkerArray" for name in re.findall(r'k(?:Bodies|Closest)Topic = "(.+)"', header)})
+    return topics
+
+
+def message_types():
+    """The fields of each message of idl/ by name: {"clearance_msgs/msg/Distances": {"minimum": Field}}."""
+    spec = importlib.util.spec_from_file_location("ros_messages", ROOT / "idl/ros_messages.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    text = "".join((ROOT / "idl" / name).read_text() for name in ("ros2.idl", "clearance.idl"))
+    return {name: {field.name: field for field in fields} for name, (fields, _) in module.read_types(text).items()}
+
+
+def is_number(topic, fields, topics, types):
+    """Whether this path through the message of the topic ends at a number. Without fields: whether the topic exists."""
+    if topic not in topics:
+        return False
+    kind = topics[topic]
+    for place, name in enumerate(fields):
+        field = types.get(kind, {}).get(re.sub(r"\[[\d:]*\]$", "", name))
+        if field is None or ("[" in name) != bool(field.offset):
+            return False
+        if place == len(fields) - 1:
+            return not field.nested and field.inner != "string"
+        kind = field.nested
+    return True
+
+
+def foxglove_paths(layout):
+    """Each topic with fields that the panels of a layout name: "clearance/distances.minimum.lower"."""
+    for panel in layout["configById"].values():
+        for topic in panel.get("topics", {}):
+            yield topic, []
+        for path in panel.get("paths", []):
+            topic, *fields = path["value"].split(".")
+            yield topic, fields
+
+
 def started(**given):
     """What the launch file starts for these arguments."""
     module = launch_file()
@@ -150,6 +195,26 @@ class RosPackages(unittest.TestCase):
         self.assertEqual(len(files), 2)
         for path in files:
             self.assertTrue(pathlib.Path(path).is_file(), path)
+
+    def test_the_saved_layout_names_topics_and_fields_that_messages_have(self):
+        topics, types = named_topics(), message_types()
+        foxglove = list(foxglove_paths(json.loads((OURS / "foxglove/clearance.json").read_text())))
+        self.assertGreater(len(foxglove), 10)
+        for topic, fields in foxglove:
+            self.assertTrue(is_number(topic, fields, topics, types), f"{topic} {fields}")
+
+    def test_a_renamed_field_or_topic_of_a_layout_is_found(self):
+        topics, types = named_topics(), message_types()
+        self.assertTrue(is_number("clearance/health", ["sources[:]", "age_ns"], topics, types))
+        for topic, fields in (
+            ("clearance/healthy", ["sources[:]", "age_ns"]),
+            ("clearance/health", ["sources", "age_ns"]),
+            ("clearance/health", ["sources[:]", "age"]),
+            ("clearance/health", ["sources[:]", "source"]),
+            ("clearance/distances", ["minimum"]),
+            ("/clearance/minimum_distance", ["datum"]),
+        ):
+            self.assertFalse(is_number(topic, fields, topics, types), f"{topic} {fields}")
 
     def after(self, status, **given):
         """What the launch file does once clearanced has ended with this status."""
