@@ -6,7 +6,6 @@
 #include "monitor/ask/motion_search.hpp"
 #include "monitor/bodies/directed_rounding.hpp"
 #include "monitor/inputs/elapsed.hpp"
-#include "monitor/pairs/kept_near.hpp"
 
 namespace clearance {
 namespace {
@@ -42,7 +41,6 @@ Stops::Stops(const Scene& scene) : scene_(scene), stopping_of_robot_(scene.robot
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     if (!scene.objects[i].fixed && robot_of_object_[i] == kNone) tracked_.push_back(i);
   }
-  kept_near_ = kept_nearer(scene, 0.0);
   changes_.resize(scene.variables.size() + 2 * scene.robots.size());
   approaches_.resize(scene.objects.size());
   for (StoppingRobot& robot : robots_) {
@@ -75,7 +73,7 @@ void Stops::add_pairs(StoppingRobot& robot) const {
         is_moved[link.object] = true;
     }
   }
-  std::vector<double> stated(scene_.pairs.size(), -kInfinity);
+  std::vector<double> stated(scene_.pairs.size(), 0.0);
   for (const Zone& zone : scene_.zones) {
     if (!zone.stop_margin) continue;
     for (const std::uint32_t pair : zone.pairs) {
@@ -91,13 +89,10 @@ void Stops::add_pairs(StoppingRobot& robot) const {
     const ObjectPair& pair = scene_.pairs[p];
     const std::uint32_t place = pair.publish ? published++ : kNone;
     if (!is_moved[pair.first] && !is_moved[pair.second]) continue;
-    const bool is_near = std::ranges::binary_search(kept_near_, p);
     robot.pairs.push_back({.pair = p,
                            .other = is_moved[pair.first] ? pair.second : pair.first,
                            .published = place,
-                           .margin = stated[p] > -kInfinity ? stated[p]
-                                     : is_near              ? -kInfinity
-                                                            : 0.0,
+                           .margin = stated[p],
                            .first_lever = static_cast<std::uint32_t>(robot.levers.size())});
     WatchedPair& added = robot.pairs.back();
     added.model_error = search_->add_levers(p, robot.levers);
@@ -296,7 +291,8 @@ bool Stops::bound_by_levers(const Inputs& inputs, const Report& report,
       const double enough = std::min(robot.question.far_enough, now.upper - kTolerance);
       known.is_enough = keeps(known.lower, margin) && known.lower >= enough;
     }
-    is_enough = is_enough && (known.is_enough || (!is_known && margin == -kInfinity));
+    // One that is not known has no margin: unknown_pair() has found none with one.
+    is_enough = is_enough && (known.is_enough || !is_known);
   }
   return is_enough;
 }

@@ -40,7 +40,7 @@ class Stops {
     std::uint32_t pair = 0;       // index into Scene::pairs
     std::uint32_t other = 0;      // object that may be late or unknown; Scene::objects
     std::uint32_t published = 0;  // index into Report::pairs, or kNone
-    double margin = 0.0;          // m; -infinity: the robot's build keeps it nearer
+    double margin = 0.0;          // m
     // What brings its bodies nearer to each other: these levers, and the motion of `tracked`.
     std::uint32_t first_lever = 0, end_lever = 0;
     std::uint32_t tracked = 0;  // neither fixed nor a link; Scene::objects, or kNone
@@ -87,7 +87,6 @@ class Stops {
   std::vector<std::uint32_t> stopping_of_robot_;  // by Scene::robots; kNone: states none
   std::vector<std::uint32_t> robot_of_object_;    // kNone: no link
   std::vector<std::uint32_t> tracked_;            // objects that are neither fixed nor links
-  std::vector<std::uint32_t> kept_near_;          // pairs that a robot's build keeps in contact
   // Until the robot stands: by variable, rad or m; by object that is neither fixed nor a link, m.
   std::vector<double> changes_, approaches_;
   std::unique_ptr<MotionSearch> search_;

@@ -36,8 +36,8 @@ clearance_msg_PairDistance unknown_pair(std::uint32_t pair) noexcept {
   clearance_msg_PairDistance unknown{};
   unknown.pair = pair;
   unknown.status = static_cast<std::uint8_t>(PairStatus::kUnknown);
-  unknown.distance = unknown.closing_speed = unknown.time_to_contact = kNaN;
-  unknown.lower = unknown.swept_lower = -kUnbounded;
+  unknown.distance = unknown.closing_speed = unknown.time_to_contact = unknown.model_error = kNaN;
+  unknown.lower = unknown.swept_lower = unknown.stop_lower = -kUnbounded;
   unknown.upper = kUnbounded;
   unknown.witness_a = unknown.witness_b = unknown.normal = kNowhere;
   unknown.age_a_ns = unknown.age_b_ns = -1;

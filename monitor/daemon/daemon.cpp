@@ -10,6 +10,7 @@
 #include <cmath>
 #include <utility>
 
+#include "monitor/app/log.hpp"
 #include "monitor/app/log_line.hpp"
 #include "monitor/daemon/intervention_notes.hpp"
 #include "monitor/files/build_info.hpp"
@@ -44,7 +45,7 @@ int port_priority(const DaemonOptions& options) noexcept {
 // Cyclone's threads inherit the scheduling of the thread that joins. The calling thread has
 // ordinary scheduling afterwards: reading and preparing a large cell may take longer than a limit
 // of real-time processor time (RLIMIT_RTTIME) allows.
-Participant join(const DaemonOptions& options) {
+Participant join(const DaemonOptions& options, const Cell& cell) {
   struct Restore {
     bool raised;
     ~Restore() {
@@ -55,7 +56,8 @@ Participant join(const DaemonOptions& options) {
   const int priority = port_priority(options);
   if (priority > 0) log_refusal(use_fifo_scheduling(priority));
   const Restore restore{priority > 0};
-  return Participant(options.dds);
+  return Participant(options.dds,
+                     ros_node_name({log_name(), std::string(cell.shares.name()), options.partner}));
 }
 
 std::unique_ptr<Recording> open_recording(const std::shared_ptr<const Cell>& cell,
@@ -84,7 +86,7 @@ Daemon::Daemon(const Cell& cell, const DaemonOptions& options)
     : options_(options),
       service_(fmt::format("cell '{}' at {} Hz", cell.scene.name, cell.scene.rate_hz)),
       reload_(cell, options.reload, service_, reload_actions()),
-      participant_(join(options)),
+      participant_(join(options, cell)),
       time_(cell.ros.use_sim_time ? std::make_unique<SimulatedTime>() : nullptr),
       moveit_([this](SceneTask task) { return put(std::move(task)); }),
       poses_(

@@ -193,6 +193,13 @@ std::string domain_configuration(const DdsOptions& options) {
   return settings.empty() ? xml : xml + "," + settings;  // what comes last wins
 }
 
+std::string second_domain_configuration(const DdsOptions& options, std::uint32_t domain) {
+  return fmt::format(
+      "<CycloneDDS><Domain id=\"any\"><Discovery><ExternalDomainId>{}</ExternalDomainId>"
+      "</Discovery></Domain></CycloneDDS>,{}",
+      domain, domain_configuration(options));
+}
+
 std::string describe_partition(const std::string& partition) {
   return partition.empty() ? "default partition" : fmt::format("partition {}", partition);
 }
@@ -201,6 +208,7 @@ std::uint32_t domain_on_the_wire(std::uint32_t domain) {
   constexpr std::string_view kElement = "<ExternalDomainId>";
   const std::string settings = own_settings_with_files();
   const std::size_t at = settings.rfind(kElement);
+  domain %= kSecondDomain;
   if (at == std::string::npos) return domain;
   const char* const text = settings.data() + at + kElement.size();
   std::uint32_t stated = 0;

@@ -16,6 +16,13 @@ namespace clearance {
 // counts and means nothing.
 [[nodiscard]] std::string domain_configuration(const DdsOptions& options);
 
+// Added to the number of a domain, it names a second one of this process that is the same on the
+// wire: if another library has configured the domain, as rmw_cyclonedds does for ROS 2 nodes.
+// Settings of CYCLONEDDS_URI for the number alone do not count there.
+constexpr std::uint32_t kSecondDomain = 0x10000;
+[[nodiscard]] std::string second_domain_configuration(const DdsOptions& options,
+                                                      std::uint32_t domain);
+
 // The number of the domain in messages: the one that this program calls `domain`, unless
 // CYCLONEDDS_URI has an ExternalDomainId.
 [[nodiscard]] std::uint32_t domain_on_the_wire(std::uint32_t domain);

@@ -103,25 +103,6 @@ bool is_secured(dds_entity_t participant) {
   return secured;
 }
 
-// A process can configure a domain once: its participants share the domain, with the options of the
-// first one.
-std::shared_ptr<const dds_entity_t> open_domain(const DdsOptions& options, std::uint32_t id) {
-  static std::mutex mutex;
-  static std::map<std::uint32_t, std::weak_ptr<const dds_entity_t>> domains;
-  const std::lock_guard lock(mutex);
-  if (auto open = domains[id].lock()) return open;
-  const dds_entity_t handle =
-      check_dds(dds_create_domain(id, domain_configuration(options).c_str()),
-                fmt::format("configuring DDS domain {}", id));
-  std::shared_ptr<const dds_entity_t> domain(new dds_entity_t(handle),
-                                             [](const dds_entity_t* entity) {
-                                               dds_delete(*entity);
-                                               delete entity;
-                                             });
-  domains[id] = domain;
-  return domain;
-}
-
 }  // namespace
 
 WriterFacts writer_facts(dds_entity_t reader, dds_instance_handle_t writer) {
@@ -186,15 +167,49 @@ dds_entity_t check_dds(dds_entity_t code, const std::string& attempted) {
   return code;
 }
 
+struct Participant::OpenDomain {
+  dds_entity_t handle;
+  std::uint32_t number;  // in this process
+};
+
+// A process can configure a domain once: our participants share it, with the options of the first
+// one. If another library of the process has configured it, theirs is left alone.
+std::shared_ptr<const Participant::OpenDomain> Participant::open_domain(const DdsOptions& options,
+                                                                        std::uint32_t id) {
+  static std::mutex mutex;
+  static std::map<std::uint32_t, std::weak_ptr<const OpenDomain>> domains;
+  const std::lock_guard lock(mutex);
+  if (auto open = domains[id].lock()) return open;
+  std::uint32_t number = id;
+  dds_entity_t handle = dds_create_domain(number, domain_configuration(options).c_str());
+  if (handle == DDS_RETCODE_PRECONDITION_NOT_MET) {
+    number = id + kSecondDomain;
+    handle = dds_create_domain(number, second_domain_configuration(options, id).c_str());
+  }
+  check_dds(handle, fmt::format("configuring DDS domain {}", id));
+  std::shared_ptr<const OpenDomain> domain(new OpenDomain{handle, number},
+                                           [](const OpenDomain* open) {
+                                             dds_delete(open->handle);
+                                             delete open;
+                                           });
+  domains[id] = domain;
+  return domain;
+}
+
 // Publisher and subscriber have the partition: endpoints of other partitions never match.
-Participant::Participant(const DdsOptions& options) {
+Participant::Participant(const DdsOptions& options, const std::string& ros_node) {
   const Domain domain = domain_of(options);
   where_ = where_joined(options, domain);
   how_to_reach_ = clearance::how_to_reach(options, domain.id);
   domain_ = open_domain(options, domain.id);
-  participant_ = check_dds(dds_create_participant(domain.id, nullptr, nullptr),
+  participant_ = check_dds(dds_create_participant(domain_->number, nullptr, nullptr),
                            fmt::format("joining {}", where_));
   make_publisher_and_subscriber(options.partition);
+  if (!ros_node.empty() && partition_.empty()) {
+    node_ = std::make_unique<RosNode>(participant_, ros_node, [this] {
+      return make_ros_writer(kRosEntities, "ros_discovery_info");
+    });
+  }
 }
 
 Participant::Participant(dds_entity_t participant, const std::string& partition)
@@ -282,12 +297,20 @@ dds_entity_t Participant::partner_reader(TopicKind kind, const std::string& name
 dds_entity_t Participant::ros_reader(const RosType& type, const std::string& name,
                                      const dds_listener_t* listener) {
   const Qos qos = ros_qos(type, type.is_reliable, type.depth);
-  return check_dds(
+  const dds_entity_t reader = check_dds(
       dds_create_reader(subscriber_, make_topic(*type.descriptor, name), qos.get(), listener),
       fmt::format("making a reader of {}", name));
+  if (node_) node_->add_reader(reader);
+  return reader;
 }
 
 dds_entity_t Participant::ros_writer(const RosType& type, const std::string& name) {
+  const dds_entity_t writer = make_ros_writer(type, name);
+  if (node_) node_->add_writer(writer);
+  return writer;
+}
+
+dds_entity_t Participant::make_ros_writer(const RosType& type, const std::string& name) {
   const Qos qos = ros_qos(type, true, type.writer_depth);
   return check_dds(
       dds_create_writer(publisher_, make_topic(*type.descriptor, name), qos.get(), nullptr),

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "monitor/participant/dds_options.hpp"
+#include "monitor/participant/ros_node.hpp"
 #include "monitor/wire/ros_types.hpp"
 #include "monitor/wire/topics.hpp"
 
@@ -53,7 +54,9 @@ struct WriterFacts {
 // Owns the domain's configuration, the participant and all endpoints made through it.
 class Participant {
  public:
-  explicit Participant(const DdsOptions& options);
+  // With a name, and in the default partition, it is a node of ROS 2 while it has endpoints of ROS
+  // 2's topics.
+  explicit Participant(const DdsOptions& options, const std::string& ros_node = {});
   // Makes endpoints in a participant that its owner deletes after this.
   Participant(dds_entity_t participant, const std::string& partition);
   ~Participant();
@@ -92,13 +95,17 @@ class Participant {
 
  private:
   void make_publisher_and_subscriber(const std::string& partition);
+  dds_entity_t make_ros_writer(const RosType& type, const std::string& name);
   dds_entity_t make_topic(const dds_topic_descriptor_t& type, const std::string& name);
 
   bool is_own_ = true;
   dds_domainid_t domain_id_ = 0;
   std::string partition_, where_, how_to_reach_;
-  std::shared_ptr<const dds_entity_t> domain_;  // shared by the participants of this process
+  struct OpenDomain;
+  static std::shared_ptr<const OpenDomain> open_domain(const DdsOptions& options, std::uint32_t id);
+  std::shared_ptr<const OpenDomain> domain_;  // shared by the participants of this process
   dds_entity_t participant_ = 0, publisher_ = 0, subscriber_ = 0;
+  std::unique_ptr<RosNode> node_;
 };
 
 // Wakes one thread when a reader has samples, or when another thread calls wake().

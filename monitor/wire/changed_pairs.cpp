@@ -1,34 +1,35 @@
 #include "monitor/wire/changed_pairs.hpp"
 
-#include <bit>
 #include <cstdint>
+#include <cstring>
+#include <type_traits>
+
+#include "monitor/inputs/elapsed.hpp"
+#include "monitor/wire/message_fields.hpp"
 
 namespace clearance {
 namespace {
 
-bool same(double a, double b) noexcept {
-  return std::bit_cast<std::uint64_t>(a) == std::bit_cast<std::uint64_t>(b);
-}
+// Compares a pair as it was listed last with itself now. Its ages are the only signed integers of
+// its fields, and its cycles the only ones of 64 bits without a sign.
+struct Comparison {
+  bool& has_changed;
 
-bool same(const clearance_msg_Vector3& a, const clearance_msg_Vector3& b) noexcept {
-  return same(a.x, b.x) && same(a.y, b.y) && same(a.z, b.z);
-}
+  template <class Value>
+  void operator()(const Field&, const Value& listed, const Value& now) const noexcept {
+    if constexpr (std::is_same_v<Value, std::int64_t>) {
+      has_changed |= (listed < 0) != (now < 0) || elapsed(listed, now) > kUnlistedAge;
+    } else if constexpr (!std::is_same_v<Value, std::uint64_t>) {
+      has_changed |= std::memcmp(&listed, &now, sizeof now) != 0;
+    }
+  }
+};
 
 bool has_changed(const clearance_msg_PairDistance& listed,
                  const clearance_msg_PairDistance& now) noexcept {
-  const bool is_alike =
-      listed.pair == now.pair && listed.part_a == now.part_a && listed.part_b == now.part_b &&
-      listed.status == now.status && same(listed.distance, now.distance) &&
-      same(listed.lower, now.lower) && same(listed.upper, now.upper) &&
-      same(listed.swept_lower, now.swept_lower) && same(listed.witness_a, now.witness_a) &&
-      same(listed.witness_b, now.witness_b) && same(listed.normal, now.normal) &&
-      same(listed.closing_speed, now.closing_speed) &&
-      same(listed.time_to_contact, now.time_to_contact);
-  const auto is_older = [](std::int64_t before, std::int64_t age) {
-    return (before < 0) != (age < 0) || age > before + kUnlistedAge;
-  };
-  return !is_alike || is_older(listed.age_a_ns, now.age_a_ns) ||
-         is_older(listed.age_b_ns, now.age_b_ns);
+  bool changed = false;
+  for_each_field(Comparison{changed}, listed, now);
+  return changed;
 }
 
 }  // namespace

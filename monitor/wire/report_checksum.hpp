@@ -15,20 +15,15 @@
 
 namespace clearance {
 
-// For the lists of fields: the same for a report and for its message. A Checksum leaves out who
-// sent it, a CRC does not.
+// For the lists of fields: the same for a report and for its message.
 template <class Sum>
 class AddToSum {
  public:
   explicit AddToSum(Sum& sum) : sum_(sum) {}
 
   template <class Value>
-  void operator()(const Field& field, const Value& value) const noexcept {
-    if constexpr (std::is_same_v<Sum, Crc64>) {
-      add(value);
-    } else {
-      if (field.meaning != Meaning::kDelivery) add(value);
-    }
+  void operator()(const Field&, const Value& value) const noexcept {
+    add(value);
   }
 
  private:

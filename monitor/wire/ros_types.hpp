@@ -64,6 +64,12 @@ topic_descriptor<rcl_interfaces_msg_dds__Log_>() noexcept {
   return rcl_interfaces_msg_dds__Log__desc;
 }
 
+template <>
+[[nodiscard]] inline const dds_topic_descriptor_t&
+topic_descriptor<rmw_dds_common_msg_dds__ParticipantEntitiesInfo_>() noexcept {
+  return rmw_dds_common_msg_dds__ParticipantEntitiesInfo__desc;
+}
+
 // The delivery of a ROS 2 topic, and what its endpoints say of its type in their USER_DATA (since
 // Iron: type description hashes, REP-2011).
 struct RosType {
@@ -115,6 +121,10 @@ inline constexpr RosType kRosLog{
     &rcl_interfaces_msg_dds__Log__desc,
     "typehash=RIHS01_e28ce254ca8abc06abf92773b74602cdbf116ed34fbaf294fb9f81da9f318eac;", true,
     1000};
+
+inline constexpr RosType kRosEntities{
+    &rmw_dds_common_msg_dds__ParticipantEntitiesInfo__desc,
+    "typehash=RIHS01_91a0593bacdcc50ea9bdcf849a938b128412cc1ea821245c663bcd26f83c295e;", true, 1};
 
 // The name of a ROS 2 topic in DDS: "rt/joint_states" is /joint_states.
 [[nodiscard]] inline std::string ros_dds_name(const std::string& topic) { return "rt" + topic; }

@@ -172,7 +172,7 @@ void Zones::explain(std::span<const TrackedObject> objects) noexcept {
     ZoneReport& report = reports_[z];
     report.cause = report.active ? ZoneCause::kNear : ZoneCause::kInactive;
     report.cause_object = 0;
-    if (!report.active || report.pair >= scene_.pairs.size()) continue;
+    if (!report.active) continue;  // a zone without pairs never is
     const std::uint32_t a = scene_.pairs[report.pair].first, b = scene_.pairs[report.pair].second;
     const ContactReport* contact = contacts_.find(report.pair);
     if (const ZoneCause cause = cause_of(contact); cause != ZoneCause::kNear) {

@@ -10,9 +10,6 @@ import time
 
 import pytest
 from pymodbus.client import ModbusTcpClient
-from pymodbus.constants import Endian
-from pymodbus.payload import BinaryPayloadDecoder
-from pymodbus.register_write_message import MaskWriteRegisterRequest
 
 from plc_programs import HALL, LIMIT_S, Hall, Plc, eventually
 
@@ -29,6 +26,14 @@ MAPPING = """plc:
     - {value: least_distance, at: 7, type: int32, unit: mm, scale: 0.001}
     - {value: speed_scaling, zone: people, at: 9, type: float32, unit: ratio}
 """
+
+
+def asked(raw, request, unit=1):
+    """The answer to a request that begins with its function."""
+    raw.sendall(struct.pack(">HHHB", 7, 0, 1 + len(request), unit) + request)
+    answer = raw.recv(512)
+    assert answer[:7] == struct.pack(">HHHB", 7, 0, len(answer) - 6, unit)
+    return answer[7:]
 
 
 @pytest.fixture(scope="module")
@@ -71,36 +76,38 @@ def test_the_table_that_describe_prints_is_what_is_served(hall, plc):
     assert plc.read()["layout"] == plc.layout != 0
     last = max(row.address for row in rows.values())
     assert f"read addresses 0 to {last}" in plc.description
-    assert not plc.client.read_input_registers(last, 1, slave=1).isError()
-    assert plc.client.read_input_registers(last + 1, 1, slave=1).exception_code == 2
-    assert plc.client.read_input_registers(last, 2, slave=1).exception_code == 2
+    assert not plc.client.read_input_registers(last, count=1).isError()
+    assert plc.client.read_input_registers(last + 1, count=1).exception_code == 2
+    assert plc.client.read_input_registers(last, count=2).exception_code == 2
 
 
 def test_both_functions_read_the_same_for_any_unit(hall, plc):
-    for unit in (0, 1, 7, 255):
-        as_input = plc.client.read_input_registers(3, 1, slave=unit)
-        as_holding = plc.client.read_holding_registers(3, 1, slave=unit)
-        assert as_input.registers == as_holding.registers == [plc.layout]
+    with socket.create_connection(plc.address, LIMIT_S) as raw:
+        for unit in (0, 1, 7, 255):
+            for function in (3, 4):
+                assert asked(raw, struct.pack(">BHH", function, 3, 1), unit) == struct.pack(">BBH", function, 2, plc.layout)
 
 
 def test_writes_are_refused_and_counted_and_change_nothing(hall, plc):
     before = plc.read()
     client = plc.client
     writes = [
-        lambda: client.write_register(11, 7, slave=1),
-        lambda: client.write_registers(0, [1, 2, 3], slave=1),
-        lambda: client.write_coil(0, True, slave=1),
-        lambda: client.write_coils(0, [True] * 9, slave=1),
-        lambda: client.execute(MaskWriteRegisterRequest(0, 1, 2, unit=1)),
-        lambda: client.readwrite_registers(read_address=0, read_count=1, write_address=0, write_registers=[5], slave=1),
+        lambda: client.write_register(11, 7).exception_code,
+        lambda: client.write_registers(0, [1, 2, 3]).exception_code,
+        lambda: client.write_coil(0, True).exception_code,
+        lambda: client.write_coils(0, [True] * 9).exception_code,
+        lambda: client.mask_write_register(address=0, and_mask=1, or_mask=2).exception_code,
+        # Both read and write; versions of pymodbus differ in the names of its arguments.
+        lambda: struct.unpack(">BB", asked(raw, struct.pack(">BHHHHBH", 23, 0, 1, 0, 1, 2, 5)))[1],
     ]
-    for count, write in enumerate(writes, 1):
-        assert write().exception_code == 1
-        plc.eventually(lambda row: row["refused_writes"] == before["refused_writes"] + count)
+    with socket.create_connection(plc.address, LIMIT_S) as raw:
+        for count, write in enumerate(writes, 1):
+            assert write() == 1
+            plc.eventually(lambda row: row["refused_writes"] == before["refused_writes"] + count)
     assert plc.told("plc-write-refused")
     assert plc.read()["layout"] == before["layout"]
     # What is no write is refused, and not counted as one.
-    assert client.read_coils(0, 1, slave=1).exception_code == 1
+    assert client.read_coils(0, count=1).exception_code == 1
     assert plc.end().count(f"{len(writes)} writes refused") == 1
 
 
@@ -170,18 +177,18 @@ def test_a_mapping_of_the_cell_is_what_a_controller_decodes(hall, tmp_path):
 
         def decoded():
             hall.send()
-            words = plc.client.read_holding_registers(7, 4, slave=1).registers
-            decoder = BinaryPayloadDecoder.fromRegisters(words, byteorder=Endian.Big, wordorder=Endian.Little)
-            micrometres, share = decoder.decode_32bit_int(), decoder.decode_32bit_float()
+            words = plc.client.read_holding_registers(7, count=4).registers
+            # The order CDAB: the lower word of each pair is first.
+            micrometres, share = struct.unpack(">if", struct.pack(">4H", words[1], words[0], words[3], words[2]))
             # The place that the robot jumped from counts for two periods.
             return (micrometres, share) if abs(micrometres - 1234500) < 10 and share > 0 else None
 
         micrometres, share = eventually(decoded)
         assert micrometres in (1234499, 1234500) and share <= 1
-        assert plc.client.read_holding_registers(6, 1, slave=1).registers == [0]  # no row has it
+        assert plc.client.read_holding_registers(6, count=1).registers == [0]  # no row has it
         hall.daemon.send_signal(signal.SIGSTOP)
         lowest = struct.unpack(">HH", struct.pack(">i", -(2**31)))[::-1]
-        eventually(lambda: plc.client.read_holding_registers(7, 4, slave=1).registers == [*lowest, 0, 0])
+        eventually(lambda: plc.client.read_holding_registers(7, count=4).registers == [*lowest, 0, 0])
         hall.daemon.send_signal(signal.SIGCONT)
 
 
@@ -268,16 +275,16 @@ def test_clients_that_flood_stall_crowd_or_send_rubbish_cost_another_one_nothing
     assert plc.told("plc-client-dropped")
     plc.eventually(lambda row: row["good"] == 1)
     # Newcomers find a place as well.
-    with ModbusTcpClient(*plc.address, timeout=LIMIT_S) as newcomer:
-        assert newcomer.read_input_registers(3, 1, slave=1).registers == [plc.layout]
+    with ModbusTcpClient(plc.address[0], port=plc.address[1], timeout=LIMIT_S) as newcomer:
+        assert newcomer.read_input_registers(3, count=1).registers == [plc.layout]
     assert re.search(r"[1-9][0-9]* clients dropped", plc.end())
 
 
 def test_a_place_is_free_for_another_host_even_if_one_takes_all(hall, plc):
     plc.client.close()
-    busy = [ModbusTcpClient(*plc.address, timeout=LIMIT_S) for _ in range(16)]
+    busy = [ModbusTcpClient(plc.address[0], port=plc.address[1], timeout=LIMIT_S) for _ in range(16)]
     for client in busy:
-        assert client.connect() and not client.read_input_registers(0, 1, slave=1).isError()
+        assert client.connect() and not client.read_input_registers(0, count=1).isError()
     with socket.create_connection(plc.address, LIMIT_S, source_address=("127.0.0.2", 0)) as other:
         other.settimeout(LIMIT_S)
         other.sendall(READ)

@@ -152,7 +152,7 @@ TEST_F(InterventionsOfADaemon, AreItsStartSourcesChangesOfTheSceneAndEnd) {
   RecordingReader reader(path("run.mcap"));
   for (RecordedMessage message; reader.next(message);) {
   }
-  EXPECT_EQ(reader.about("cell_hash"), changes[1]["cell_hash"]) << "of the last scene";
+  EXPECT_EQ(changes[1]["cell_hash"], reader.about("cell_hash")) << "of the last scene";
   EXPECT_EQ(reader.about("build"), kBuild);
 }
 

@@ -52,7 +52,7 @@ TEST_F(OfficialReader, FindsEveryMessageStreamedAndIndexed) {
       if (ours == 0) continue;
       const json& theirs = read[how]["topics"][Topics{}.*topic.name];
       EXPECT_EQ(ours, theirs["messages"]) << how;
-      EXPECT_EQ(topic_schema(topic.kind).name, theirs["type"]);
+      EXPECT_EQ(theirs["type"], topic_schema(topic.kind).name);
     }
   }
   EXPECT_EQ(read["streamed"]["order"], read["indexed"]["order"]);
@@ -67,7 +67,7 @@ TEST_F(OfficialReader, SeeksThroughTheIndex) {
   EXPECT_GT(late, 200);
   EXPECT_GT(read["indexed"]["statistics"]["chunkCount"], 2);
   EXPECT_EQ(json::array({"zstd"}), read["indexed"]["compressions"]);
-  EXPECT_EQ(cell.yaml, read["indexed"]["metadata"][std::string(kRecordingMetadata)]["cell"]);
+  EXPECT_EQ(read["indexed"]["metadata"][std::string(kRecordingMetadata)]["cell"], cell.yaml);
 }
 
 TEST_F(OfficialReader, DecodesEveryFieldByTheSchemaInTheFile) {
@@ -100,7 +100,7 @@ TEST_F(OfficialReader, DecodesEveryFieldByTheSchemaInTheFile) {
   EXPECT_EQ(false, poses["poses"][0]["has_twist"]);
 
   const json& catalogue = read["streamed"]["topics"]["clearance/catalogue"]["first"];
-  EXPECT_EQ(cell.yaml, catalogue["cell_yaml"]);
+  EXPECT_EQ(catalogue["cell_yaml"], cell.yaml);
   EXPECT_EQ("box", catalogue["objects"][2]["name"]);
   EXPECT_EQ("block", catalogue["objects"][2]["parts"][0]);
   EXPECT_EQ("stop", read["streamed"]["topics"]["clearance/zones"]["first"]["name"]);

@@ -20,6 +20,8 @@ BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
 OURS = ROOT / "tools/ros2/clearance_ros"
 MESSAGES = BUILD / "idl/clearance_msgs"
 SOURCES = ROOT / "tools/ros2/clearance"
+CONTROL = ROOT / "tools/ros2/clearance_control"
+MOVEIT = ROOT / "tools/ros2/clearance_moveit"
 
 # Packages of Debian that tools/setup installs, and the keys that rosdep has for them; None: it has none.
 KEYS = {
@@ -247,7 +249,7 @@ class RosPackages(unittest.TestCase):
         self.assertLessEqual({*left, *right}, {name for name, _, _ in one.ARGUMENTS})
 
     def test_each_package_has_the_name_of_its_folder_and_one_version(self):
-        folders = (OURS, MESSAGES, SOURCES)
+        folders = (OURS, MESSAGES, SOURCES, CONTROL, MOVEIT)
         found = [xml.parse(folder / "package.xml").getroot() for folder in folders]
         self.assertEqual([each.find("name").text for each in found], [folder.name for folder in folders])
         self.assertEqual(len({each.find("version").text for each in found}), 1)

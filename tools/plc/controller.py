@@ -63,7 +63,7 @@ class Controller:
         """The counts of all rows by their names, or of the rows in the first few blocks."""
         words = {}
         for begin, end in self.blocks[:blocks]:
-            answer = self.client.read_input_registers(begin, end - begin, slave=1)
+            answer = self.client.read_input_registers(begin, count=end - begin)
             if answer.isError():
                 raise ConnectionError(str(answer))
             words.update(enumerate(answer.registers, begin))

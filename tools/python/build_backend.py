@@ -64,7 +64,7 @@ def metadata(folder):
     return (
         f"Metadata-Version: 2.1\nName: clearance\nVersion: {version()}\n"
         "Summary: Certified distances of robots, live and offline\n"
-        f"Requires-Python: >=3.9\nRequires-Dist: {requirement}\n"
+        f"Requires-Python: >=3.10\nRequires-Dist: {requirement}\n"
     )
 
 

@@ -2,6 +2,7 @@
 // report of every tick.
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <cstdint>
 #include <cstring>
 #include <vector>
@@ -147,6 +148,21 @@ TEST(CompleteReports, AnotherDaemonOrSceneBeginsWithAFullOne) {
     for (std::uint32_t i = 0; i < second->pairs._length; ++i)
       EXPECT_EQ(second->pairs._buffer[i].status, static_cast<std::uint8_t>(PairStatus::kUnknown));
   }
+}
+
+// The rule of monitor/interface/report.hpp: a value is NaN, a bound is infinite, and an age
+// negative.
+TEST(CompleteReports, KnowNothingOfAnUnknownPair) {
+  const clearance_msg_PairDistance unknown = unknown_pair(3);
+  EXPECT_EQ(unknown.pair, 3u);
+  for (const double value : {unknown.distance, unknown.model_error, unknown.closing_speed,
+                             unknown.time_to_contact, unknown.normal.x, unknown.witness_a.y})
+    EXPECT_TRUE(std::isnan(value));
+  for (const double bound :
+       {unknown.lower, unknown.swept_lower, unknown.stop_lower, -unknown.upper})
+    EXPECT_EQ(bound, -kInfinity);
+  EXPECT_LT(unknown.age_a_ns, 0);
+  EXPECT_LT(unknown.age_b_ns, 0);
 }
 
 // An age is listed again before it has grown by more than the limit.

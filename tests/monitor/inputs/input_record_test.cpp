@@ -5,7 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <set>
 #include <string>
+
+#include "core/convex_body.hpp"
+#include "monitor/inputs/refused_value.hpp"
 
 namespace clearance {
 namespace {
@@ -164,6 +168,30 @@ TEST(InputRecord, IsNotSoundWithABitThatNoMonitorOfTheSceneCanHave) {
   other.owner = InputOwner(kSecond);
   EXPECT_FALSE(other.is_sound(stated)) << "the cell names another one";
   EXPECT_TRUE(stated.is_sound(stated));
+}
+
+TEST(Contradiction, IsAnyCauseButNonsenseOtherSourcesAndSamplesThatAreLittleOlder) {
+  const std::set<Reject> no_contradiction = {Reject::kUnknownObject, Reject::kNonFinite,
+                                             Reject::kNotUnit, Reject::kWrongRevision,
+                                             Reject::kOtherSource};
+  for (std::size_t i = 0; i < kRejects; ++i) {
+    const auto cause = static_cast<Reject>(i);
+    const bool is_old = cause == Reject::kBackwards;
+    const bool expected = !no_contradiction.contains(cause);
+    EXPECT_EQ(is_contradiction(cause, kNow - kAgeLimit, kNow, kAgeLimit), expected && !is_old)
+        << name(cause);
+    EXPECT_EQ(is_contradiction(cause, kNow - kAgeLimit - 1, kNow, kAgeLimit), expected)
+        << name(cause);
+  }
+}
+
+// People see floats: a number beyond them is infinite.
+TEST(RefusedValue, OfANumberBeyondFloatsIsInfinite) {
+  for (const double position : {1e300, -1e300, 0.5, kInfinity, -kInfinity}) {
+    const JointSample sample{.position = position};
+    const RefusedValue refused(Reject::kOutsideLimits, sample, kNow);
+    EXPECT_EQ(refused.value[0], position > 1.0 ? kInfinity : position < -1.0 ? -kInfinity : 0.5);
+  }
 }
 
 }  // namespace

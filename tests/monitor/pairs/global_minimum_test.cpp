@@ -5,8 +5,11 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <optional>
+#include <tuple>
 #include <vector>
 
+#include "tests/shared/every_choice.hpp"
 #include "tests/shared/random.hpp"
 
 namespace clearance {
@@ -55,6 +58,61 @@ TEST(GlobalMinimum, OfPairsAtTheSameDistanceIsCertified) {
 TEST(GlobalMinimum, MayItselfBeWide) {
   EXPECT_TRUE(is_certified({evaluated(0.1, 0.3), evaluated(0.3, 0.3)}));
   EXPECT_FALSE(is_certified({evaluated(0.1, 0.3), evaluated(0.2, 0.4)}));
+}
+
+// What a tick may know of a pair: nothing, or bounds of this tick or of an earlier one.
+PairBounds any_bounds(test::EveryChoice& choice) {
+  constexpr double kLowers[] = {0.1, 0.2, 0.3}, kWidths[] = {0.0, 0.15};
+  if (choice.flag()) return {};
+  PairBounds bounds = evaluated(kLowers[choice.of(3)], 0.0);
+  bounds.upper = bounds.lower + kWidths[choice.of(2)];
+  const std::size_t when = choice.of(3);
+  if (when > 0) bounds.status = PairStatus::kCarried;
+  bounds.evaluated_cycle = when < 2 ? 1 : 0;
+  return bounds;
+}
+
+TEST(GlobalMinimum, OfAnyThreePairsOfWhichOneComesTwiceIsTheOneWithTheLeastUpperBound) {
+  constexpr double kRests[] = {kInfinity, 0.15, 0.9};
+  test::EveryChoice choice;
+  while (choice.next()) {
+    GlobalMinimum minimum;
+    std::vector<PairBounds> pairs;
+    for (int i = 0; i < 3; ++i) pairs.push_back(any_bounds(choice));
+    for (std::uint32_t i = 0; i < 3; ++i) minimum.add(i, pairs[i]);
+    const auto again = static_cast<std::uint32_t>(choice.of(3));
+    minimum.add(again, pairs[again]);
+    const double rest = kRests[choice.of(3)];
+    minimum.add_rest(rest, rest);
+
+    std::optional<std::uint32_t> least;
+    bool any_unknown = false;
+    double lower = rest;
+    for (std::uint32_t i = 0; i < 3; ++i) {
+      lower = std::min(lower, pairs[i].lower);
+      any_unknown |= pairs[i].status == PairStatus::kUnknown;
+      if (pairs[i].evaluated_cycle == 0) continue;
+      const auto of = [&](std::uint32_t pair) {
+        return std::tuple(pairs[pair].upper, pairs[pair].lower, pair);
+      };
+      if (!least || of(i) < of(*least)) least = i;
+    }
+    ASSERT_EQ(minimum.lower(), lower);
+    ASSERT_EQ(minimum.swept_lower(), lower);
+    ASSERT_EQ(minimum.known(), least.has_value());
+    if (least) {
+      ASSERT_EQ(minimum.pair(), *least);
+    }
+    if (any_unknown) continue;  // the tick adds none
+    bool certified = least && rest >= pairs[*least].upper;
+    for (std::uint32_t i = 0; certified && i < 3; ++i) {
+      const bool is_exact =
+          pairs[i].status == PairStatus::kConverged && pairs[i].upper == pairs[i].lower;
+      certified = i == *least || is_exact || pairs[i].lower >= pairs[*least].upper;
+    }
+    ASSERT_EQ(minimum.certified(), certified) << "run " << choice.runs();
+  }
+  EXPECT_EQ(choice.runs(), 19u * 19u * 19u * 9u);
 }
 
 }  // namespace

@@ -147,6 +147,25 @@ TEST(Participant, GivesEveryEndpointUserDataSoThatNoRosNodeWarnsOfIt) {
             std::pair(3 * topics + 2, 0));
 }
 
+// As rmw_cyclonedds does in a process of ROS 2.
+TEST(Participant, JoinsADomainThatAnotherLibraryOfTheProcessHasConfigured) {
+  const DdsOptions dds = test::own_dds();
+  const dds_entity_t domain =
+      check_dds(dds_create_domain(*dds.domain, domain_configuration(dds).c_str()), "configuring");
+  {
+    Participant theirs(check_dds(dds_create_participant(*dds.domain, nullptr, nullptr), "joining"),
+                       dds.partition);
+    Participant ours(dds), second(dds);
+    const dds_entity_t writer = ours.writer(TopicKind::kPoses, "poses");
+    theirs.reader(TopicKind::kPoses, "poses");
+    second.reader(TopicKind::kPoses, "poses");
+    EXPECT_TRUE(test::eventually([&] { return test::matched_readers(writer) == 2; }));
+    EXPECT_EQ(ours.address("poses"), theirs.address("poses"));
+    EXPECT_EQ(second.address("poses"), Participant(ours.handle(), dds.partition).address("poses"));
+  }
+  dds_delete(domain);
+}
+
 TEST(Participant, SaysHowLargeItsDatagramsAre) {
   const Participant participant(test::own_dds());
   EXPECT_THAT(participant.where(), HasSubstr("interface lo, datagrams of up to 65000 B"));

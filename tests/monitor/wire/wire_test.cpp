@@ -226,11 +226,33 @@ TEST(Convert, ReportFillsAPreparedSampleWithoutMovingItsStorage) {
 }
 
 TEST(Convert, ReportThatDoesNotFitSaysSo) {
-  Sample<clearance_msg_Distances> sample = make_distances(small_scene());
+  const Scene scene = small_scene();
+  Sample<clearance_msg_Distances> sample = make_distances(scene);
   Report report;
   report.pairs.resize(3);
   EXPECT_FALSE(to_wire(report, {}, 0, *sample));
   EXPECT_EQ(2u, sample->pairs._length);
+  report.pairs.resize(2);
+  EXPECT_TRUE(to_wire(report, {}, 0, *sample));
+  const std::vector<SourceUse> uses(clearance_msg_kMaxSources + 1, {SourceName("arm"), 9, 8});
+  EXPECT_TRUE(to_wire(report, std::span(uses).first(clearance_msg_kMaxSources), 0, *sample));
+  EXPECT_FALSE(to_wire(report, uses, 0, *sample));
+  EXPECT_EQ(clearance_msg_kMaxSources, sample->sources._length);
+  EXPECT_EQ(clearance_msg_kMaxSources, sample->source_contents._length);
+  EXPECT_EQ(8u, sample->source_contents._buffer[clearance_msg_kMaxSources - 1]);
+}
+
+TEST(Convert, ReportNamesTheZonesThatAreActiveAsFarAsItHasRoom) {
+  const Scene scene = small_scene();
+  Sample<clearance_msg_Distances> sample = make_distances(scene);
+  Report report;
+  report.zones.resize(3);
+  for (const std::uint32_t zone : {2u, 0u}) {
+    report.zones[zone].active = true;
+    EXPECT_TRUE(to_wire(report, {}, 0, *sample));
+    ASSERT_EQ(1u, sample->active_zones._length) << "the scene has one zone";
+    EXPECT_EQ(zone, sample->active_zones._buffer[0]);
+  }
 }
 
 // No two numbers and no two names of a kind are the same, so that no field can stand for another.

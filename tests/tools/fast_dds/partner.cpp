@@ -8,7 +8,6 @@
 #include <fastcdr/FastBuffer.h>
 #include <fastcdr/exceptions/Exception.h>
 
-#include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
 #include <algorithm>
 #include <array>
 #include <chrono>
@@ -16,7 +15,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <cstring>
 #include <fastdds/dds/domain/DomainParticipant.hpp>
 #include <fastdds/dds/domain/DomainParticipantFactory.hpp>
 #include <fastdds/dds/publisher/DataWriter.hpp>
@@ -24,7 +22,6 @@
 #include <fastdds/dds/subscriber/DataReader.hpp>
 #include <fastdds/dds/subscriber/SampleInfo.hpp>
 #include <fastdds/dds/subscriber/Subscriber.hpp>
-#include <fastdds/dds/topic/TopicDataType.hpp>
 #include <fastdds/dds/topic/TypeSupport.hpp>
 #include <memory>
 #include <nlohmann/json.hpp>
@@ -33,45 +30,13 @@
 #include <utility>
 #include <vector>
 
+#include "tests/tools/fast_dds/wire_type.hpp"
+
 namespace {
 
-namespace fdds = eprosima::fastdds::dds;
-namespace rtps = eprosima::fastrtps::rtps;
 using eprosima::fastcdr::Cdr;
 using eprosima::fastcdr::FastBuffer;
 using nlohmann::json;
-using Bytes = std::vector<char>;
-
-constexpr std::uint32_t kLargest = 1 << 20;
-
-// A type that is known by its name only: its samples are the bytes of the wire.
-class WireType final : public fdds::TopicDataType {
- public:
-  explicit WireType(const std::string& name) {
-    setName(name.c_str());
-    m_typeSize = kLargest;
-    m_isGetKeyDefined = false;
-  }
-  bool serialize(void* data, rtps::SerializedPayload_t* payload) override {
-    const Bytes& bytes = *static_cast<Bytes*>(data);
-    if (bytes.size() > payload->max_size) return false;
-    std::memcpy(payload->data, bytes.data(), bytes.size());
-    payload->length = static_cast<std::uint32_t>(bytes.size());
-    payload->encapsulation = CDR_LE;
-    return true;
-  }
-  bool deserialize(rtps::SerializedPayload_t* payload, void* data) override {
-    const auto* const begin = reinterpret_cast<const char*>(payload->data);
-    static_cast<Bytes*>(data)->assign(begin, begin + payload->length);
-    return true;
-  }
-  std::function<std::uint32_t()> getSerializedSizeProvider(void* data) override {
-    return [data] { return static_cast<std::uint32_t>(static_cast<Bytes*>(data)->size()); };
-  }
-  void* createData() override { return new Bytes; }
-  void deleteData(void* data) override { delete static_cast<Bytes*>(data); }
-  bool getKey(void*, rtps::InstanceHandle_t*, bool) override { return false; }
-};
 
 template <class T>
 T take(Cdr& cdr) {
@@ -207,7 +172,7 @@ Bytes joint_state(const std::vector<std::string>& names, const std::vector<doubl
   const auto now = duration_cast<nanoseconds>(system_clock::now().time_since_epoch()).count();
   Bytes bytes(4096);
   FastBuffer buffer(bytes.data(), bytes.size());
-  Cdr cdr(buffer, Cdr::LITTLE_ENDIANNESS, Cdr::DDS_CDR);
+  Cdr cdr(buffer, Cdr::LITTLE_ENDIANNESS, kCdr);
   cdr.serialize_encapsulation();
   cdr.serialize(static_cast<std::int32_t>(now / 1'000'000'000));
   cdr.serialize(static_cast<std::uint32_t>(now % 1'000'000'000));
@@ -216,7 +181,7 @@ Bytes joint_state(const std::vector<std::string>& names, const std::vector<doubl
   cdr.serialize(positions);
   cdr.serialize(std::vector<double>(positions.size(), 0.0));
   cdr.serialize(std::vector<double>());
-  bytes.resize(cdr.getSerializedDataLength());
+  bytes.resize(length_of(cdr));
   return bytes;
 }
 
@@ -268,15 +233,15 @@ fdds::DataWriter* make_writer(fdds::DomainParticipant* participant, const std::s
 void print_new(fdds::DataReader* reader, const Heard& of) {
   Bytes bytes;
   fdds::SampleInfo info;
-  while (reader->take_next_sample(&bytes, &info) == ReturnCode_t::RETCODE_OK) {
+  while (reader->take_next_sample(&bytes, &info) == kOk) {
     if (!info.valid_data) continue;
     FastBuffer buffer(bytes.data(), bytes.size());
-    Cdr cdr(buffer, Cdr::LITTLE_ENDIANNESS, Cdr::DDS_CDR);
+    Cdr cdr(buffer, Cdr::LITTLE_ENDIANNESS, kCdr);
     json line{{"topic", of.topic}};
     try {
       cdr.read_encapsulation();
       line["message"] = of.read(cdr);
-      line["left"] = bytes.size() - cdr.getSerializedDataLength();
+      line["left"] = bytes.size() - length_of(cdr);
     } catch (const eprosima::fastcdr::exception::Exception& error) {
       line["error"] = error.what();
     }

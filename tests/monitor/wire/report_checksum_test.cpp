@@ -1,0 +1,170 @@
+// Checksums of reports, and the CRC and address of messages. Oracle: the CDR bytes, whose every bit
+// is flipped, and reports of which one field differs.
+#include "monitor/wire/report_checksum.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <vector>
+
+#include "monitor/wire/cdr.hpp"
+#include "monitor/wire/convert.hpp"
+#include "tests/monitor/wire/wire_samples.hpp"
+
+namespace clearance::test {
+namespace {
+
+constexpr std::uint64_t kSealAddress = 9;
+
+template <class Message>
+std::vector<std::byte> sealed_bytes(const Message& message) {
+  CdrEncoder encoder;
+  const auto bytes = encoder.encode(message);
+  return {bytes.begin(), bytes.end()};
+}
+
+template <class Message>
+class SealedMessage : public testing::Test {};
+using SealedTypes = testing::Types<clearance_msg_Distances, clearance_msg_ZoneState,
+                                   clearance_msg_Health, clearance_msg_Separation>;
+TYPED_TEST_SUITE(SealedMessage, SealedTypes);
+
+TYPED_TEST(SealedMessage, IsGoodAtItsAddressAndAtNoOther) {
+  std::mt19937_64 random(7);
+  for (int i = 0; i < 50; ++i) {
+    Sample<TypeParam> message;
+    fill(random, message);
+    seal(*message, kSealAddress);
+    EXPECT_TRUE(has_its_crc(*message));
+    EXPECT_EQ(delivery_error(*message, kSealAddress), ReportError::kGood);
+    EXPECT_EQ(delivery_error(*message, kSealAddress + 1), ReportError::kOtherAddress);
+    message->address = kSealAddress + 1;
+    EXPECT_EQ(delivery_error(*message, kSealAddress + 1), ReportError::kCorrupt);
+  }
+}
+
+// Padding holds nothing: the message is then the same.
+TYPED_TEST(SealedMessage, OfWhichAnyBitIsFlippedIsRefusedOrCorrupt) {
+  std::mt19937_64 random(8);
+  Sample<TypeParam> message, came;
+  fill(random, message);
+  seal(*message, kSealAddress);
+  const std::vector<std::byte> good = sealed_bytes(*message);
+  CdrDecoder decoder;
+  std::size_t corrupt = 0, same = 0;
+  for (std::size_t bit = 0; bit < 8 * good.size(); ++bit) {
+    std::vector<std::byte> bytes = good;
+    bytes[bit / 8] ^= static_cast<std::byte>(1u << bit % 8);
+    if (!decoder.decode(bytes, came)) continue;
+    if (sealed_bytes(*came) == good) {
+      ++same;
+      continue;
+    }
+    ++corrupt;
+    ASSERT_EQ(delivery_error(*came, kSealAddress), ReportError::kCorrupt) << "bit " << bit;
+  }
+  EXPECT_GT(corrupt, same);
+}
+
+TEST(Seal, OfAPartnerStatesWhatPartnersCompare) {
+  std::mt19937_64 random(9);
+  Sample<clearance_msg_Distances> message;
+  fill(random, message);
+  message->checksum = 5;
+  seal(*message, kSealAddress);
+  EXPECT_EQ(message->checksum, 5u) << "a daemon on its own states none";
+  std::strcpy(message->partner, "left");
+  seal(*message, kSealAddress);
+  EXPECT_EQ(message->checksum, checksum_of(*message));
+}
+
+TEST(Crc, CountsATextUpToItsEnd) {
+  clearance_msg_Distances message{};
+  const std::uint64_t empty = crc_of(message);
+  message.partner[1] = 'x';
+  EXPECT_EQ(crc_of(message), empty) << "nothing counts behind the first zero";
+  std::memset(message.partner, 'x', sizeof message.partner);
+  const std::uint64_t without_end = crc_of(message);
+  message.partner[sizeof message.partner - 1] = 'y';
+  EXPECT_NE(crc_of(message), without_end) << "a text without an end counts whole";
+}
+
+TEST(Crc, TakesANullTextForAnEmptyOne) {
+  Sample<clearance_msg_Health> null, empty, one;
+  empty->recording = dds_string_dup("");
+  one->recording = dds_string_dup("x");
+  EXPECT_EQ(crc_of(*null), crc_of(*empty));
+  EXPECT_NE(crc_of(*null), crc_of(*one));
+}
+
+// A report of two sources, with zones that are active.
+class PartnersCompare : public testing::Test {
+ protected:
+  PartnersCompare() {
+    reserve_sequence(message->sources, 2);
+    reserve_sequence(message->source_contents, 2);
+    reserve_sequence(message->active_zones, 2);
+    message->sources._length = message->source_contents._length = message->active_zones._length = 2;
+    std::strcpy(message->sources._buffer[0].source, "ab");
+    std::strcpy(message->sources._buffer[1].source, "c");
+    message->checksum = 7;
+    message->period_ns = 1'000'000;
+  }
+  // Whether a change to the message changes what a function says of it.
+  template <class Function, class Change>
+  bool counts(const Function& function, const Change& change) {
+    const std::uint64_t before = function(*message);
+    change(*message);
+    return function(*message) != before;
+  }
+  Sample<clearance_msg_Distances> message;
+};
+
+TEST_F(PartnersCompare, AreChecksumZonesAndPeriodOfAWholeReport) {
+  const auto counted = [&](const auto& change) { return counts(compared_checksum, change); };
+  EXPECT_TRUE(counted([](auto& m) { m.checksum = 8; }));
+  EXPECT_TRUE(counted([](auto& m) { m.active_zones._buffer[1] = 3; }));
+  EXPECT_TRUE(counted([](auto& m) { m.active_zones._length = 1; }));
+  EXPECT_TRUE(counted([](auto& m) { m.period_ns = 2'000'000; }));
+  EXPECT_FALSE(counted([](auto& m) { m.publish_ns = 5; }));
+}
+
+TEST_F(PartnersCompare, IsNoChecksumOfAReportOfChanges) {
+  const auto counted = [&](const auto& change) { return counts(compared_checksum, change); };
+  EXPECT_TRUE(counted([](auto& m) { m.changes_since = 4; }));
+  EXPECT_FALSE(counted([](auto& m) { m.checksum = 9; }));
+  EXPECT_FALSE(counted([](auto& m) { m.changes_since = 5; }));
+  EXPECT_TRUE(counted([](auto& m) { m.active_zones._length = 0; }));
+}
+
+TEST_F(PartnersCompare, InputsAreTheSourcesWithTheirNumbersAndContents) {
+  const auto counted = [&](const auto& change) { return counts(inputs_checksum_of, change); };
+  EXPECT_TRUE(counted([](auto& m) { std::strcpy(m.sources._buffer[0].source, "a"); }));
+  EXPECT_TRUE(counted([](auto& m) { std::strcpy(m.sources._buffer[1].source, "bc"); }));
+  EXPECT_TRUE(counted([](auto& m) { m.sources._buffer[1].sequence_number = 1; }));
+  EXPECT_TRUE(counted([](auto& m) { m.source_contents._buffer[1] = 1; }));
+  EXPECT_TRUE(counted([](auto& m) { m.source_contents._length = 1; }));
+  EXPECT_TRUE(counted([](auto& m) { m.sources._length = 1; }));
+  EXPECT_FALSE(counted([](auto& m) { m.period_ns = 5; }));
+}
+
+// Partners compare messages, and replays reports.
+TEST(ReportChecksum, OfAReportIsThatOfItsMessageAndCountsEachOfItsPairs) {
+  std::mt19937_64 random(10);
+  Sample<clearance_msg_Distances> message;
+  fill(random, message);
+  ASSERT_GT(message->pairs._length, 1u);
+  Report report;
+  from_wire(*message, report);
+  EXPECT_EQ(checksum_of(report), checksum_of(*message));
+  message->publish_ns ^= 1;
+  EXPECT_EQ(checksum_of(report), checksum_of(*message)) << "the sender does not count";
+  for (PairReport& pair : report.pairs) {
+    const std::uint64_t before = checksum_of(report);
+    pair.swept_lower = 0.125;
+    EXPECT_NE(checksum_of(report), before);
+  }
+}
+
+}  // namespace
+}  // namespace clearance::test

@@ -1,0 +1,160 @@
+// Checks of whole motions: closed forms, and exact distances at many instants.
+#include "arm_scene.hpp"
+
+#include <gtest/gtest.h>
+#include <octomap/octomap.h>
+#include <cmath>
+
+namespace {
+
+using collision_detection::AllowedCollisionMatrix;
+using collision_detection::CollisionRequest;
+using collision_detection::CollisionResult;
+using moveit::core::RobotState;
+
+constexpr double kTip = 1.22, kRadius = 0.06;
+
+struct Motion {
+  ArmScene& scene;
+  RobotState from, to;
+
+  Motion(ArmScene& in, const std::vector<double>& begin, const std::vector<double>& end)
+      : scene(in), from(in.state), to(in.state) {
+    from.setJointGroupPositions("all", begin);
+    to.setJointGroupPositions("all", end);
+    from.update();
+    to.update();
+  }
+  // Every joint moves linearly. The tests that use it keep away from half a turn.
+  [[nodiscard]] RobotState at(double share) const {
+    RobotState state(from);
+    for (std::size_t i = 0; i < state.getVariableCount(); ++i) {
+      const double begin = from.getVariablePosition(static_cast<int>(i));
+      const double end = to.getVariablePosition(static_cast<int>(i));
+      state.setVariablePosition(static_cast<int>(i), begin + share * (end - begin));
+    }
+    state.update();
+    return state;
+  }
+  [[nodiscard]] CollisionResult check(bool distance = false,
+                                      const AllowedCollisionMatrix& matrix = {}) const {
+    CollisionRequest request;
+    request.contacts = true;
+    request.distance = distance;
+    CollisionResult result;
+    scene.ours.checkRobotCollision(request, result, from, to, matrix);
+    return result;
+  }
+  [[nodiscard]] double share_of_contact() const {
+    const CollisionResult result = check();
+    if (result.contacts.size() != 1) return std::nan("");
+    return result.contacts.begin()->second.front().percent_interpolation;
+  }
+};
+
+struct MoveItMotions : testing::Test {
+  ArmScene scene;
+  Motion sweep{scene, {0.0, 0.0, -0.3}, {0.0, 0.0, 0.3}};  // of the ball, along x
+};
+
+TEST_F(MoveItMotions, MeetAThinSheetThatBothEndsMiss) {
+  scene.add("sheet", box_thing({0.001, 0.5, 0.05}), Eigen::Vector3d(0.1, 0.0, kTip + 0.025));
+  CollisionResult end;
+  scene.ours.checkRobotCollision({}, end, sweep.from);
+  scene.ours.checkRobotCollision({}, end, sweep.to);
+  EXPECT_FALSE(end.collision);
+  EXPECT_TRUE(sweep.check().collision);
+  EXPECT_NEAR(sweep.share_of_contact(), (0.3 + 0.1 - 0.0005 - kRadius) / 0.6, 1e-6);
+}
+
+TEST_F(MoveItMotions, PassBesideWhatTheyMissByAMicrometre) {
+  for (const double gap : {1e-6, -1e-6}) {
+    scene.add("ball", ball_thing(0.05), Eigen::Vector3d(0.0, 0.0, kTip + kRadius + 0.05 + gap));
+    const CollisionResult result = sweep.check(true);
+    EXPECT_EQ(result.collision, gap < 0.0);
+    EXPECT_NEAR(result.distance, std::max(gap, 0.0), 1.1e-6);
+    scene.world->removeObject("ball");
+  }
+}
+
+TEST_F(MoveItMotions, OfContinuousJointsTakeTheShorterArc) {
+  const Motion motion(scene, {3.0, 1.0, 0.0}, {-3.0, 1.0, 0.0});
+  const double reach = 0.5 * std::sin(1.0), height = 0.72 + 0.5 * std::cos(1.0);
+  scene.add("ahead", ball_thing(0.02), Eigen::Vector3d(reach, 0.0, height));
+  EXPECT_FALSE(motion.check().collision);
+  scene.add("behind", ball_thing(0.02), Eigen::Vector3d(-reach, 0.0, height));
+  EXPECT_TRUE(motion.check().collision);
+}
+
+TEST_F(MoveItMotions, CarryAttachedBodies) {
+  scene.add("sheet", box_thing({0.001, 0.5, 0.05}), Eigen::Vector3d(0.1, 0.0, kTip + 0.3));
+  EXPECT_FALSE(sweep.check().collision);
+  const Eigen::Isometry3d above(Eigen::Translation3d(0.0, 0.0, 0.3));
+  for (RobotState* state : {&sweep.from, &sweep.to}) {
+    state->attachBody(std::make_unique<moveit::core::AttachedBody>(
+        scene.model->getLinkModel("tip"), "held", Eigen::Isometry3d::Identity(),
+        std::vector<shapes::ShapeConstPtr>{std::make_shared<shapes::Box>(0.02, 0.02, 0.02)},
+        EigenSTL::vector_Isometry3d{above}, std::set<std::string>{},
+        trajectory_msgs::msg::JointTrajectory()));
+    state->update();
+  }
+  EXPECT_TRUE(sweep.check().collision);
+  EXPECT_NEAR(sweep.share_of_contact(), (0.3 + 0.1 - 0.0005 - 0.01) / 0.6, 1e-6);
+  AllowedCollisionMatrix matrix;
+  matrix.setEntry("held", "sheet", true);
+  EXPECT_FALSE(sweep.check(false, matrix).collision);
+}
+
+TEST_F(MoveItMotions, MeetTheLeavesOfOctrees) {
+  const auto tree = std::make_shared<octomap::OcTree>(0.01);
+  tree->updateNode(octomap::point3d(0.105F, 0.005F, 0.005F), true);
+  tree->updateNode(octomap::point3d(-0.105F, 0.005F, 0.005F), false);
+  scene.world->addToObject("map", std::make_shared<shapes::OcTree>(tree),
+                           Eigen::Isometry3d(Eigen::Translation3d(0.0, -0.005, kTip - 0.005)));
+  EXPECT_TRUE(sweep.check().collision);
+  EXPECT_NEAR(sweep.share_of_contact(), (0.3 + 0.1 - kRadius) / 0.6, 1e-6);
+}
+
+TEST_F(MoveItMotions, CountAsCollisionsWhereTheyCannotBeChecked) {
+  scene.world->addToObject("nothing", std::make_shared<shapes::Mesh>(0, 0),
+                           Eigen::Isometry3d::Identity());
+  EXPECT_TRUE(sweep.check().collision);
+}
+
+TEST_F(MoveItMotions, AreFreeOrInContactAsTheExactDistancesSay) {
+  constexpr int kSamples = 100;
+  Draw draw(11);
+  int free = 0, met = 0;
+  for (int i = 0; i < 60; ++i) {
+    ArmScene random;
+    draw.fill(random, 5);
+    std::vector<double> begin, end;
+    for (const double most : {1.5, 2.0, 0.3}) {
+      begin.push_back(draw.between(-most, most));
+      end.push_back(draw.between(-most, most));
+    }
+    const Motion motion(random, begin, end);
+    const CollisionResult result = motion.check(true);
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = 0; k <= kSamples; ++k)
+      least =
+          std::min(least, random.exact_distance_at(motion.at(static_cast<double>(k) / kSamples)));
+    EXPECT_LE(result.distance, std::max(0.0, least) + 1e-12);
+    if (!result.collision) {
+      EXPECT_GT(least, 0.0);
+      EXPECT_GT(result.distance, least - 0.05);  // the samples are 5 cm apart, or less
+      ++free;
+      continue;
+    }
+    ASSERT_FALSE(result.contacts.empty());
+    const double share = result.contacts.begin()->second.front().percent_interpolation;
+    EXPECT_LE(random.exact_distance_at(motion.at(share)), 1e-9);
+    for (int k = 0; k < kSamples * share - 1e-3; ++k)
+      EXPECT_GT(random.exact_distance_at(motion.at(static_cast<double>(k) / kSamples)), 0.0);
+    ++met;
+  }
+  EXPECT_GT(free, 10);
+  EXPECT_GT(met, 10);
+}
+
+}  // namespace

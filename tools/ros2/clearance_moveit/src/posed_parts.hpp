@@ -1,0 +1,58 @@
+// The convex parts of links, attached bodies and objects of the world, at their places.
+#pragma once
+
+#include "shape_parts.hpp"
+
+#include <core/pose.hpp>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include <moveit/collision_detection/collision_common.hpp>
+#include <moveit/robot_state/attached_body.hpp>
+
+namespace clearance_moveit {
+
+using clearance::Pose;
+
+// A link, an attached body or an object of the world. Parts of one owner are never checked against
+// each other.
+struct Owner {
+  std::string name;
+  collision_detection::BodyType type = collision_detection::BodyTypes::WORLD_OBJECT;
+  const moveit::core::LinkModel* link = nullptr;         // that it is, or is attached to
+  const moveit::core::AttachedBody* attached = nullptr;  // of attached bodies
+
+  bool operator==(const Owner&) const = default;
+};
+
+struct PosedPart {
+  std::shared_ptr<const ShapeParts> shape;
+  // The only body of the part; null: the part is a whole octree, or nothing stands for the shape.
+  const clearance::ConvexBody* body = nullptr;
+  Pose world_from_part;
+  std::uint32_t owner = 0;
+
+  bool operator==(const PosedPart& other) const {
+    return shape == other.shape && body == other.body && owner == other.owner &&
+           clearance::same_pose(world_from_part, other.world_from_part);
+  }
+};
+
+struct PosedParts {
+  std::vector<Owner> owners;
+  std::vector<PosedPart> parts;
+  std::vector<Box> boxes;  // one around each part, in the world; rounding included
+
+  // Adds the parts of a shape of the last owner.
+  void add(const std::shared_ptr<const ShapeParts>& shape, const Eigen::Isometry3d& place);
+  // Removes the parts of an owner. The owners behind it keep their order.
+  void remove(const std::string& owner);
+};
+
+[[nodiscard]] Pose pose_of(const Eigen::Isometry3d& place);
+// The box around a body at a pose, rounding included.
+[[nodiscard]] Box placed(const Box& box, const Pose& pose) noexcept;
+
+}  // namespace clearance_moveit
