@@ -98,6 +98,9 @@ def named_topics():
     rows = "".join((ROOT / "idl" / page).read_text() for page in ("README.md", "ROS.md"))
     topics = {name: f"clearance_msgs/msg/{kind}" for name, kind in re.findall(r"^\| `(clearance/\w+)` \| `(\w+)`", rows, re.MULTILINE)}
     topics.update({name: kind.replace("/", "/msg/") for name, kind in re.findall(r"^\| `rt(/[\w/]+)` \| `(\w+/\w+)`", rows, re.MULTILINE)})
+    alike = re.search(r"^\| (`rt/clearance/distances`.*?) \| `clearance_msgs/Distances`, \.\.\. \| as the daemon's own topics", rows, re.MULTILINE)
+    names = {name.rpartition("/")[2] for name in re.findall(r"`(.+?)`", alike[1])} - {"zones"}  # one message with all zones
+    topics.update({f"/clearance/{name}": topics[f"clearance/{name}"] for name in names})
     header = (ROOT / "monitor/visual/cell_markers.hpp").read_text()
     topics.update({name: "visualization_msgs/msg/MarkerArray" for name in re.findall(r'k(?:Bodies|Closest)Topic = "(.+)"', header)})
     return topics
@@ -110,6 +113,10 @@ def message_types():
     spec.loader.exec_module(module)
     text = "".join((ROOT / "idl" / name).read_text() for name in ("ros2.idl", "clearance.idl"))
     return {name: {field.name: field for field in fields} for name, (fields, _) in module.read_types(text).items()}
+
+
+def saved_layout():
+    return json.loads((OURS / "foxglove/clearance.json").read_text())
 
 
 def is_number(topic, fields, topics, types):
@@ -130,11 +137,18 @@ def is_number(topic, fields, topics, types):
 def foxglove_paths(layout):
     """Each topic with fields that the panels of a layout name: "clearance/distances.minimum.lower"."""
     for panel in layout["configById"].values():
-        for topic in panel.get("topics", {}):
+        for topic in [*panel.get("topics", {}), *filter(None, [panel.get("topicToRender")])]:
             yield topic, []
         for path in panel.get("paths", []):
             topic, *fields = path["value"].split(".")
             yield topic, fields
+
+
+def placed_panels(place, panels):
+    """The panels that a part of a layout shows, with those of the tabs in it."""
+    if isinstance(place, dict):
+        return [each for half in ("first", "second") for each in placed_panels(place[half], panels)]
+    return [place, *(each for tab in panels[place].get("tabs", []) for each in placed_panels(tab["layout"], panels))]
 
 
 def started(**given):
@@ -200,10 +214,21 @@ class RosPackages(unittest.TestCase):
 
     def test_the_saved_layout_names_topics_and_fields_that_messages_have(self):
         topics, types = named_topics(), message_types()
-        foxglove = list(foxglove_paths(json.loads((OURS / "foxglove/clearance.json").read_text())))
-        self.assertGreater(len(foxglove), 10)
+        foxglove = list(foxglove_paths(saved_layout()))
+        standard = {"/clearance/minimum_distance", "/clearance/speed_scaling", "/clearance/markers", "/diagnostics"}
+        self.assertLessEqual(standard, {topic for topic, _ in foxglove})
         for topic, fields in foxglove:
             self.assertTrue(is_number(topic, fields, topics, types), f"{topic} {fields}")
+
+    def test_the_saved_layout_plots_the_same_figures_of_ros_and_of_our_own_topics(self):
+        figures = [(topic, fields) for topic, fields in foxglove_paths(saved_layout()) if fields and fields != ["data"]]
+        own = sorted((f"/{topic}", fields) for topic, fields in figures if not topic.startswith("/"))
+        self.assertGreater(len(own), 10)
+        self.assertEqual(own, sorted((topic, fields) for topic, fields in figures if topic.startswith("/")))
+
+    def test_the_saved_layout_shows_each_of_its_panels_once(self):
+        layout = saved_layout()
+        self.assertEqual(sorted(placed_panels(layout["layout"], layout["configById"])), sorted(layout["configById"]))
 
     def test_a_renamed_field_or_topic_of_a_layout_is_found(self):
         topics, types = named_topics(), message_types()
@@ -215,6 +240,8 @@ class RosPackages(unittest.TestCase):
             ("clearance/health", ["sources[:]", "source"]),
             ("clearance/distances", ["minimum"]),
             ("/clearance/minimum_distance", ["datum"]),
+            ("/clearance/healthy", ["tick_p50_us"]),
+            ("/diagnostic", []),
         ):
             self.assertFalse(is_number(topic, fields, topics, types), f"{topic} {fields}")
 
