@@ -4,6 +4,7 @@ usage: ros_packages_test.py BUILD
 """
 
 import importlib.util
+import json
 import pathlib
 import re
 import subprocess
@@ -92,6 +93,64 @@ def launch_file(name="clearance"):
     return module
 
 
+def named_topics():
+    """The type of each topic, as the pages of idl/ have it, and of the markers that show the scene."""
+    rows = "".join((ROOT / "idl" / page).read_text() for page in ("README.md", "ROS.md"))
+    topics = {name: f"clearance_msgs/msg/{kind}" for name, kind in re.findall(r"^\| `(clearance/\w+)` \| `(\w+)`", rows, re.MULTILINE)}
+    topics.update({name: kind.replace("/", "/msg/") for name, kind in re.findall(r"^\| `rt(/[\w/]+)` \| `(\w+/\w+)`", rows, re.MULTILINE)})
+    alike = re.search(r"^\| (`rt/clearance/distances`.*?) \| `clearance_msgs/Distances`, \.\.\. \| as the daemon's own topics", rows, re.MULTILINE)
+    names = {name.rpartition("/")[2] for name in re.findall(r"`(.+?)`", alike[1])} - {"zones"}  # one message with all zones
+    topics.update({f"/clearance/{name}": topics[f"clearance/{name}"] for name in names})
+    header = (ROOT / "monitor/visual/cell_markers.hpp").read_text()
+    topics.update({name: "visualization_msgs/msg/MarkerArray" for name in re.findall(r'k(?:Bodies|Closest)Topic = "(.+)"', header)})
+    return topics
+
+
+def message_types():
+    """The fields of each message of idl/ by name: {"clearance_msgs/msg/Distances": {"minimum": Field}}."""
+    spec = importlib.util.spec_from_file_location("ros_messages", ROOT / "idl/ros_messages.py")
+    module = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(module)
+    text = "".join((ROOT / "idl" / name).read_text() for name in ("ros2.idl", "clearance.idl"))
+    return {name: {field.name: field for field in fields} for name, (fields, _) in module.read_types(text).items()}
+
+
+def saved_layout():
+    return json.loads((OURS / "foxglove/clearance.json").read_text())
+
+
+def is_number(topic, fields, topics, types):
+    """Whether this path through the message of the topic ends at a number. Without fields: whether the topic exists."""
+    if topic not in topics:
+        return False
+    kind = topics[topic]
+    for place, name in enumerate(fields):
+        field = types.get(kind, {}).get(re.sub(r"\[[\d:]*\]$", "", name))
+        if field is None or ("[" in name) != bool(field.offset):
+            return False
+        if place == len(fields) - 1:
+            return not field.nested and field.inner != "string"
+        kind = field.nested
+    return True
+
+
+def foxglove_paths(layout):
+    """Each topic with fields that the panels of a layout name: "clearance/distances.minimum.lower"."""
+    for panel in layout["configById"].values():
+        for topic in [*panel.get("topics", {}), *filter(None, [panel.get("topicToRender")])]:
+            yield topic, []
+        for path in panel.get("paths", []):
+            topic, *fields = path["value"].split(".")
+            yield topic, fields
+
+
+def placed_panels(place, panels):
+    """The panels that a part of a layout shows, with those of the tabs in it."""
+    if isinstance(place, dict):
+        return [each for half in ("first", "second") for each in placed_panels(place[half], panels)]
+    return [place, *(each for tab in panels[place].get("tabs", []) for each in placed_panels(tab["layout"], panels))]
+
+
 def started(**given):
     """What the launch file starts for these arguments."""
     module = launch_file()
@@ -152,6 +211,39 @@ class RosPackages(unittest.TestCase):
         self.assertEqual(len(files), 2)
         for path in files:
             self.assertTrue(pathlib.Path(path).is_file(), path)
+
+    def test_the_saved_layout_names_topics_and_fields_that_messages_have(self):
+        topics, types = named_topics(), message_types()
+        foxglove = list(foxglove_paths(saved_layout()))
+        standard = {"/clearance/minimum_distance", "/clearance/speed_scaling", "/clearance/markers", "/diagnostics"}
+        self.assertLessEqual(standard, {topic for topic, _ in foxglove})
+        for topic, fields in foxglove:
+            self.assertTrue(is_number(topic, fields, topics, types), f"{topic} {fields}")
+
+    def test_the_saved_layout_plots_the_same_figures_of_ros_and_of_our_own_topics(self):
+        figures = [(topic, fields) for topic, fields in foxglove_paths(saved_layout()) if fields and fields != ["data"]]
+        own = sorted((f"/{topic}", fields) for topic, fields in figures if not topic.startswith("/"))
+        self.assertGreater(len(own), 10)
+        self.assertEqual(own, sorted((topic, fields) for topic, fields in figures if topic.startswith("/")))
+
+    def test_the_saved_layout_shows_each_of_its_panels_once(self):
+        layout = saved_layout()
+        self.assertEqual(sorted(placed_panels(layout["layout"], layout["configById"])), sorted(layout["configById"]))
+
+    def test_a_renamed_field_or_topic_of_a_layout_is_found(self):
+        topics, types = named_topics(), message_types()
+        self.assertTrue(is_number("clearance/health", ["sources[:]", "age_ns"], topics, types))
+        for topic, fields in (
+            ("clearance/healthy", ["sources[:]", "age_ns"]),
+            ("clearance/health", ["sources", "age_ns"]),
+            ("clearance/health", ["sources[:]", "age"]),
+            ("clearance/health", ["sources[:]", "source"]),
+            ("clearance/distances", ["minimum"]),
+            ("/clearance/minimum_distance", ["datum"]),
+            ("/clearance/healthy", ["tick_p50_us"]),
+            ("/diagnostic", []),
+        ):
+            self.assertFalse(is_number(topic, fields, topics, types), f"{topic} {fields}")
 
     def after(self, status, **given):
         """What the launch file does once clearanced has ended with this status."""

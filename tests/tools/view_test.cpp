@@ -117,6 +117,7 @@ TEST(View, SpeaksFoxglovesProtocolToItsOwnClient) {
                   {"schemaName", "clearance::msg::Distances"},
                   {"schemaEncoding", "omgidl"}}));
   EXPECT_EQ(found["channels"]["/tf"]["schemaName"], "tf2_msgs/msg/TFMessage");
+  EXPECT_EQ(found["redefined"], json::array()) << "names that channels define differently";
   // The cycles are in order and occur once, but not all of them: a frame shows the newest.
   const std::vector<std::uint64_t> cycles = found["cycles"];
   EXPECT_EQ(std::ranges::adjacent_find(cycles, std::greater_equal<>()), cycles.end());

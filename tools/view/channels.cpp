@@ -10,7 +10,10 @@ namespace clearance::view {
 std::vector<Channel> channels_of(const Topics& topics) {
   std::vector<Channel> channels;
   for (const Topic& topic : kRecordedTopics) {
-    channels.push_back({topics.*topic.name, topic_schema(topic.kind)});
+    // The whole text: viewers hold one definition of each module, also of its constants, for all
+    // channels. The cut texts of recordings have other constants for each topic.
+    const McapSchema& cut = topic_schema(topic.kind);
+    channels.push_back({topics.*topic.name, {cut.name, cut.encoding, kIdlText}});
   }
   channels.push_back({kTransformsTopic, ros::transforms_schema()});
   channels.push_back({kBodiesTopic, ros::markers_schema()});

@@ -2,6 +2,7 @@
 // REPORTS reports and a message of each topic; of a recording, it sets the time and waits until that stands there:
 //   node foxglove.mjs URL reports REPORTS TOPICS...
 //   node foxglove.mjs URL time TIME
+import { parseIDL } from "@foxglove/omgidl-parser";
 import protocol from "@foxglove/ws-protocol";
 import WebSocket from "ws";
 
@@ -11,7 +12,8 @@ const { FoxgloveClient } = protocol;
 const [url, what, figure, ...topics] = process.argv.slice(2);
 const STANDS = 20; // frames without a message
 const client = new FoxgloveClient({ ws: new WebSocket(url, [FoxgloveClient.SUPPORTED_SUBPROTOCOL]) });
-const found = { channels: {}, first: {}, last: {}, cycles: [], times: [], statuses: [] };
+const found = { channels: {}, first: {}, last: {}, cycles: [], times: [], statuses: [], redefined: [] };
+const definitions = new Map(); // of all channels, by name
 const channels = new Map();
 
 client.on("serverInfo", ({ name, capabilities }) => Object.assign(found, { name, capabilities }));
@@ -25,6 +27,7 @@ client.on("time", () => {
 client.on("advertise", (advertised) => {
   for (const { id, topic, encoding, schemaName, schema, schemaEncoding } of advertised) {
     found.channels[topic] = { encoding, schemaName, schemaEncoding };
+    if (schemaEncoding === "omgidl") define(schema);
     channels.set(client.subscribe(id), { topic, reader: readerOf(schemaName, schemaEncoding, schema) });
   }
   if (what === "time") client.setParameters([{ name: "playback.time", value: Number(figure) }], "set");
@@ -46,6 +49,15 @@ client.on("message", ({ subscriptionId, data }) => {
   found.first[topic] ??= found.last[topic];
   if (what === "reports" && found.cycles.length >= Number(figure) && topics.every((each) => found.last[each])) say();
 });
+
+// A viewer holds one definition of each name, and shows an error when a channel brings another one.
+function define(schema) {
+  for (const { name, ...definition } of parseIDL(schema)) {
+    const text = JSON.stringify(definition, plain);
+    if ((definitions.get(name) ?? text) !== text) found.redefined.push(name);
+    definitions.set(name, text);
+  }
+}
 
 function say() {
   console.log(JSON.stringify(found, plain));
