@@ -20,8 +20,8 @@ struct Motion {
 
   Motion(ArmScene& in, const std::vector<double>& begin, const std::vector<double>& end)
       : scene(in), from(in.state), to(in.state) {
-    from.setJointGroupPositions("all", begin);
-    to.setJointGroupPositions("all", end);
+    from.setJointGroupActivePositions("all", begin);
+    to.setJointGroupActivePositions("all", end);
     from.update();
     to.update();
   }
@@ -154,6 +154,59 @@ TEST_F(MoveItMotions, AreFreeOrInContactAsTheExactDistancesSay) {
     ++met;
   }
   EXPECT_GT(free, 10);
+constexpr const char* kSlides = R"(<robot name="slides">
+  <link name="base"/><link name="a"/>
+  <link name="b"><collision><geometry><box size="0.043 0.043 0.043"/></geometry></collision></link>
+  <link name="c"><collision><origin xyz="0 0.1 0"/><geometry><box size="0.043 0.043 0.043"/></geometry></collision></link>
+  <joint name="turn" type="revolute"><parent link="base"/><child link="a"/><axis xyz="0 0 1"/>
+    <limit lower="-1" upper="1" velocity="1" effort="1"/></joint>
+  <joint name="slide" type="prismatic"><parent link="a"/><child link="b"/><axis xyz="1 0 0"/>
+    <limit lower="0" upper="0.1" velocity="1" effort="1"/></joint>
+  <joint name="follow" type="prismatic"><parent link="a"/><child link="c"/><axis xyz="1 0 0"/>
+    <limit lower="0" upper="0.45" velocity="1" effort="1"/><mimic joint="slide" multiplier="4" offset="0.05"/></joint>
+  </robot>)";
+
+struct MoveItSlides : testing::Test {
+  ArmScene scene{robot_model(kSlides, R"(<robot name="slides"><group name="all">
+    <joint name="turn"/><joint name="slide"/><joint name="follow"/></group></robot>)")};
+
+  // Of the robot among only the leaf of 1 cm that holds a point.
+  bool collides(const Motion& motion, const Eigen::Vector3d& leaf) const {
+    const auto tree = std::make_shared<octomap::OcTree>(0.01);
+    tree->updateNode(leaf.x(), leaf.y(), leaf.z(), true);
+    scene.world->removeObject("map");
+    scene.world->addToObject("map", std::make_shared<shapes::OcTree>(tree),
+                             Eigen::Isometry3d::Identity());
+    CollisionResult result;
+    scene.ours.checkRobotCollision({}, result, motion.from, motion.to);
+    return result.collision;
+  }
+};
+
+TEST_F(MoveItSlides, OfRobotsSmallerThanAMetreMeetTheLeavesBetweenTheirEnds) {
+  const Motion motion(scene, {0.0, 0.0}, {0.0, 0.1});
+  for (const double row : {0.0, 0.1}) {  // the leader moves from 0 to 0.1, its mimic from 0.05
+    const double low = 0.5 * row, high = low + 0.1 + 3.0 * row;
+    for (int x = -5; x < 55; ++x) {
+      for (int y = -4; y < 4; ++y) {
+        const Eigen::Vector3d leaf(0.01 * x + 0.005, 0.01 * y + 0.005 + row, 0.005);
+        const bool meets = leaf.x() > low - 0.0265 && leaf.x() < high + 0.0265 &&
+                           std::abs(leaf.y() - row) < 0.0265;
+        ASSERT_EQ(collides(motion, leaf), meets) << leaf.transpose();
+      }
+    }
+  }
+}
+
+TEST_F(MoveItSlides, ThatStandOutTurnFar) {
+  const Motion motion(scene, {0.0, 0.1}, {0.6, 0.1});
+  const auto turned = [](double angle) -> Eigen::Vector3d {
+    return Eigen::AngleAxisd(angle, Eigen::Vector3d::UnitZ()) * Eigen::Vector3d(0.45, 0.1, 0.0);
+  };
+  EXPECT_TRUE(collides(motion, turned(0.6)));
+  EXPECT_FALSE(collides(motion, turned(0.8)));
+}
+
   EXPECT_GT(met, 10);
 }
 
