@@ -98,6 +98,33 @@ TEST_F(MoveItMotions, CarryAttachedBodies) {
         trajectory_msgs::msg::JointTrajectory()));
     state->update();
   }
+// MoveIt has the follower at half of where the leader stands: from 1.5 to -1.5.
+TEST(MoveItMimics, OfAJointThatTakesTheShorterArcCannotBeChecked) {
+  ArmScene scene(robot_model(
+      R"(<robot name="mimic"><link name="base"/><link name="a"/>
+    <link name="b"><collision><origin xyz="0.5 0 0"/><geometry><sphere radius="0.05"/></geometry></collision></link>
+    <joint name="lead" type="continuous"><parent link="base"/><child link="a"/><axis xyz="0 0 1"/></joint>
+    <joint name="follow" type="revolute"><parent link="base"/><child link="b"/><axis xyz="0 0 1"/>
+      <limit lower="-3.2" upper="3.2" velocity="1" effort="1"/><mimic joint="lead" multiplier="0.5"/></joint>
+    </robot>)",
+      R"(<robot name="mimic"><group name="all"><joint name="lead"/><joint name="follow"/></group></robot>)"));
+  scene.add("ball", ball_thing(0.05),
+            Eigen::Vector3d(0.5 * std::cos(-1.5), 0.5 * std::sin(-1.5), 0.0));
+  const Motion wraps(scene, {3.0}, {-3.0}), arrives(scene, {-2.0}, {-3.0}),
+      stays(scene, {2.0}, {3.0});
+  CollisionResult end;
+  scene.ours.checkRobotCollision({}, end, wraps.to);
+  EXPECT_TRUE(end.collision);
+  const auto collides = [&](const Motion& motion) {
+    CollisionResult result;
+    scene.ours.checkRobotCollision({}, result, motion.from, motion.to);
+    return result.collision;
+  };
+  EXPECT_TRUE(collides(wraps));
+  EXPECT_TRUE(collides(arrives));
+  EXPECT_FALSE(collides(stays));
+}
+
   EXPECT_TRUE(sweep.check().collision);
   EXPECT_NEAR(sweep.share_of_contact(), (0.3 + 0.1 - 0.0005 - 0.01) / 0.6, 1e-6);
   AllowedCollisionMatrix matrix;

@@ -21,7 +21,7 @@ bool is_single(const JointModel& joint) {
   return joint.getType() == JointModel::REVOLUTE || joint.getType() == JointModel::PRISMATIC;
 }
 
-// How far the joint moves.
+// How far the joint moves: a continuous one along the shorter arc.
 double step(const JointModel& joint, double from, double to) {
   const bool wraps = joint.getType() == JointModel::REVOLUTE &&
                      static_cast<const moveit::core::RevoluteJointModel&>(joint).isContinuous();
@@ -128,6 +128,8 @@ std::variant<MotionVerdict, std::string> check_motion(const RobotState& from, co
   for_each_variable(
       from, to, [&](const JointModel& joint, const std::string& name, double begin, double step) {
         if (is_single(joint)) {
+          if (step != to.getVariablePosition(name) - begin && !joint.getMimicRequests().empty())
+            fault = "the joint '" + joint.getName() + "' has mimics and takes the shorter arc";
           question.motion.joints.push_back(name);
           question.motion.positions.push_back(begin);
           ends.push_back(begin + step);
