@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <octomap/octomap.h>
 #include <cmath>
+#include <limits>
 
 namespace {
 
@@ -86,18 +87,6 @@ TEST_F(MoveItMotions, OfContinuousJointsTakeTheShorterArc) {
   EXPECT_TRUE(motion.check().collision);
 }
 
-TEST_F(MoveItMotions, CarryAttachedBodies) {
-  scene.add("sheet", box_thing({0.001, 0.5, 0.05}), Eigen::Vector3d(0.1, 0.0, kTip + 0.3));
-  EXPECT_FALSE(sweep.check().collision);
-  const Eigen::Isometry3d above(Eigen::Translation3d(0.0, 0.0, 0.3));
-  for (RobotState* state : {&sweep.from, &sweep.to}) {
-    state->attachBody(std::make_unique<moveit::core::AttachedBody>(
-        scene.model->getLinkModel("tip"), "held", Eigen::Isometry3d::Identity(),
-        std::vector<shapes::ShapeConstPtr>{std::make_shared<shapes::Box>(0.02, 0.02, 0.02)},
-        EigenSTL::vector_Isometry3d{above}, std::set<std::string>{},
-        trajectory_msgs::msg::JointTrajectory()));
-    state->update();
-  }
 // MoveIt has the follower at half of where the leader stands: from 1.5 to -1.5.
 TEST(MoveItMimics, OfAJointThatTakesTheShorterArcCannotBeChecked) {
   ArmScene scene(robot_model(
@@ -125,6 +114,18 @@ TEST(MoveItMimics, OfAJointThatTakesTheShorterArcCannotBeChecked) {
   EXPECT_FALSE(collides(stays));
 }
 
+TEST_F(MoveItMotions, CarryAttachedBodies) {
+  scene.add("sheet", box_thing({0.001, 0.5, 0.05}), Eigen::Vector3d(0.1, 0.0, kTip + 0.3));
+  EXPECT_FALSE(sweep.check().collision);
+  const Eigen::Isometry3d above(Eigen::Translation3d(0.0, 0.0, 0.3));
+  for (RobotState* state : {&sweep.from, &sweep.to}) {
+    state->attachBody(std::make_unique<moveit::core::AttachedBody>(
+        scene.model->getLinkModel("tip"), "held", Eigen::Isometry3d::Identity(),
+        std::vector<shapes::ShapeConstPtr>{std::make_shared<shapes::Box>(0.02, 0.02, 0.02)},
+        EigenSTL::vector_Isometry3d{above}, std::set<std::string>{},
+        trajectory_msgs::msg::JointTrajectory()));
+    state->update();
+  }
   EXPECT_TRUE(sweep.check().collision);
   EXPECT_NEAR(sweep.share_of_contact(), (0.3 + 0.1 - 0.0005 - 0.01) / 0.6, 1e-6);
   AllowedCollisionMatrix matrix;
@@ -142,45 +143,6 @@ TEST_F(MoveItMotions, MeetTheLeavesOfOctrees) {
   EXPECT_NEAR(sweep.share_of_contact(), (0.3 + 0.1 - kRadius) / 0.6, 1e-6);
 }
 
-TEST_F(MoveItMotions, CountAsCollisionsWhereTheyCannotBeChecked) {
-  scene.world->addToObject("nothing", std::make_shared<shapes::Mesh>(0, 0),
-                           Eigen::Isometry3d::Identity());
-  EXPECT_TRUE(sweep.check().collision);
-}
-
-TEST_F(MoveItMotions, AreFreeOrInContactAsTheExactDistancesSay) {
-  constexpr int kSamples = 100;
-  Draw draw(11);
-  int free = 0, met = 0;
-  for (int i = 0; i < 60; ++i) {
-    ArmScene random;
-    draw.fill(random, 5);
-    std::vector<double> begin, end;
-    for (const double most : {1.5, 2.0, 0.3}) {
-      begin.push_back(draw.between(-most, most));
-      end.push_back(draw.between(-most, most));
-    }
-    const Motion motion(random, begin, end);
-    const CollisionResult result = motion.check(true);
-    double least = std::numeric_limits<double>::infinity();
-    for (int k = 0; k <= kSamples; ++k)
-      least =
-          std::min(least, random.exact_distance_at(motion.at(static_cast<double>(k) / kSamples)));
-    EXPECT_LE(result.distance, std::max(0.0, least) + 1e-12);
-    if (!result.collision) {
-      EXPECT_GT(least, 0.0);
-      EXPECT_GT(result.distance, least - 0.05);  // the samples are 5 cm apart, or less
-      ++free;
-      continue;
-    }
-    ASSERT_FALSE(result.contacts.empty());
-    const double share = result.contacts.begin()->second.front().percent_interpolation;
-    EXPECT_LE(random.exact_distance_at(motion.at(share)), 1e-9);
-    for (int k = 0; k < kSamples * share - 1e-3; ++k)
-      EXPECT_GT(random.exact_distance_at(motion.at(static_cast<double>(k) / kSamples)), 0.0);
-    ++met;
-  }
-  EXPECT_GT(free, 10);
 constexpr const char* kSlides = R"(<robot name="slides">
   <link name="base"/><link name="a"/>
   <link name="b"><collision><geometry><box size="0.043 0.043 0.043"/></geometry></collision></link>
@@ -234,6 +196,58 @@ TEST_F(MoveItSlides, ThatStandOutTurnFar) {
   EXPECT_FALSE(collides(motion, turned(0.8)));
 }
 
+TEST_F(MoveItMotions, CountAsCollisionsWhereTheyCannotBeChecked) {
+  scene.world->addToObject("nothing", std::make_shared<shapes::Mesh>(0, 0),
+                           Eigen::Isometry3d::Identity());
+  EXPECT_TRUE(sweep.check().collision);
+}
+
+TEST_F(MoveItMotions, WithoutNumbersAreCollisions) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto tree = std::make_shared<octomap::OcTree>(0.1);
+  tree->updateNode(octomap::point3d(5.05F, 0.05F, 0.05F), true);
+  scene.world->addToObject("map", std::make_shared<shapes::OcTree>(tree),
+                           Eigen::Isometry3d::Identity());
+  EXPECT_FALSE(sweep.check().collision);
+  EXPECT_TRUE(Motion(scene, {0.0, nan, 0.0}, {0.0, 0.0, 0.0}).check().collision);
+  EXPECT_TRUE(Motion(scene, {0.0, 0.0, 0.0}, {0.0, nan, 0.0}).check().collision);
+  scene.world->setObjectPose("map", Eigen::Isometry3d(Eigen::Translation3d(nan, 0.0, 0.0)));
+  EXPECT_TRUE(sweep.check().collision);
+}
+
+TEST_F(MoveItMotions, AreFreeOrInContactAsTheExactDistancesSay) {
+  constexpr int kSamples = 100;
+  Draw draw(11);
+  int free = 0, met = 0;
+  for (int i = 0; i < 60; ++i) {
+    ArmScene random;
+    draw.fill(random, 5);
+    std::vector<double> begin, end;
+    for (const double most : {1.5, 2.0, 0.3}) {
+      begin.push_back(draw.between(-most, most));
+      end.push_back(draw.between(-most, most));
+    }
+    const Motion motion(random, begin, end);
+    const CollisionResult result = motion.check(true);
+    double least = std::numeric_limits<double>::infinity();
+    for (int k = 0; k <= kSamples; ++k)
+      least =
+          std::min(least, random.exact_distance_at(motion.at(static_cast<double>(k) / kSamples)));
+    EXPECT_LE(result.distance, std::max(0.0, least) + 1e-12);
+    if (!result.collision) {
+      EXPECT_GT(least, 0.0);
+      EXPECT_GT(result.distance, least - 0.05);  // the samples are 5 cm apart, or less
+      ++free;
+      continue;
+    }
+    ASSERT_FALSE(result.contacts.empty());
+    const double share = result.contacts.begin()->second.front().percent_interpolation;
+    EXPECT_LE(random.exact_distance_at(motion.at(share)), 1e-9);
+    for (int k = 0; k < kSamples * share - 1e-3; ++k)
+      EXPECT_GT(random.exact_distance_at(motion.at(static_cast<double>(k) / kSamples)), 0.0);
+    ++met;
+  }
+  EXPECT_GT(free, 10);
   EXPECT_GT(met, 10);
 }
 
