@@ -342,6 +342,22 @@ TEST(MoveItStates, CollideWithObjectsWithoutAPose) {
   }
 }
 
+TEST(MoveItShapes, ThatAreGoneDoNotKeepTheirOctrees) {
+  const ArmScene scene;
+  const auto world = std::make_shared<collision_detection::World>();  // FCL keeps the trees of its
+  const clearance_moveit::CollisionEnv ours(scene.model, world);
+  auto tree = std::make_shared<octomap::OcTree>(0.1);
+  tree->updateNode(octomap::point3d(5.05F, 0.05F, 0.05F), true);
+  world->addToObject("map", std::make_shared<shapes::OcTree>(tree), Eigen::Isometry3d::Identity());
+  CollisionResult result;
+  ours.checkRobotCollision({}, result, scene.state);
+  EXPECT_FALSE(result.collision);
+  world->removeObject("map");
+  const std::weak_ptr<octomap::OcTree> seen = tree;
+  tree.reset();
+  EXPECT_TRUE(seen.expired());
+}
+
 TEST(MoveItShapes, MeshesOfOneContentAreSplitOnce) {
   const auto first = clearance_moveit::parts_of(wedge_thing({0.1, 0.2, 0.3}).shape);
   EXPECT_EQ(first, clearance_moveit::parts_of(wedge_thing({0.1, 0.2, 0.3}).shape));

@@ -205,6 +205,8 @@ std::shared_ptr<const ShapeParts> shared_parts(const shapes::Shape& shape) {
 std::shared_ptr<const ShapeParts> parts_of(const shapes::ShapeConstPtr& shape, double scale,
                                            double padding) {
   static PartsCache cache;
+  // A cache would keep a tree whose shape is gone, and the cubes are made in no time.
+  if (shape->type == shapes::OCTREE) return shared_parts(*shape);
   const Key key{shape, scale, padding};
   if (auto found = cache.find(key)) return found;
   std::shared_ptr<const ShapeParts> made;
