@@ -105,6 +105,22 @@ TEST(MoveItDistances, JoinTwoPointsOfTheBodiesAlongTheNormal) {
 
 constexpr double kTip = 1.22, kRadius = 0.06;
 
+TEST(MoveItDistanceTypes, WithAtMostNoDistanceOfAPairStillKnowTheLeast) {
+  ArmScene scene;
+  const auto ball = std::make_shared<shapes::Sphere>(0.02);
+  for (int i = 2; i > 0; --i) {
+    scene.world->addToObject("balls", ball,
+                             Eigen::Isometry3d(Eigen::Translation3d(0.0, 0.2 * i, kTip)));
+  }
+  collision_detection::DistanceRequest request;
+  request.type = types::LIMITED;
+  request.max_contacts_per_body = 0;
+  collision_detection::DistanceResult result;
+  result.distances[{"balls", "tip"}].clear();  // an empty list, as an earlier request leaves it
+  scene.ours.distanceRobot(request, result, scene.state);
+  EXPECT_NEAR(result.minimum_distance.distance, 0.2 - 0.02 - kRadius, 1e-12);
+}
+
 TEST(MoveItDistanceTypes, OfOverlapsHaveTheDeepestLeafInWhateverOrder) {
   for (const auto type : {types::GLOBAL, types::SINGLE, types::LIMITED, types::ALL}) {
     ArmScene scene;

@@ -52,7 +52,7 @@ void DistanceCheck::check(const PosedParts& a, const PosedParts& b, PairFilter& 
 double DistanceCheck::limit(const Pair& pair) const {
   if (is_global()) return result_.minimum_distance.distance;
   const auto known = result_.distances.find(pair);
-  if (known == result_.distances.end()) return request_.distance_threshold;
+  if (known == result_.distances.end() || known->second.empty()) return request_.distance_threshold;
   switch (request_.type) {
     case types::LIMITED:
       return known->second.size() < request_.max_contacts_per_body ? request_.distance_threshold
