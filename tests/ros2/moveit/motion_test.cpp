@@ -4,7 +4,18 @@
 #include <gtest/gtest.h>
 #include <octomap/octomap.h>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
+#include <new>
+
+static thread_local std::size_t taken_from_heap = 0;  // calls of new
+void* operator new(std::size_t size) {
+  ++taken_from_heap;
+  if (void* memory = std::malloc(size)) return memory;
+  throw std::bad_alloc();
+}
+void operator delete(void* memory) noexcept { std::free(memory); }
+void operator delete(void* memory, std::size_t) noexcept { std::free(memory); }
 
 namespace {
 
@@ -213,6 +224,42 @@ TEST_F(MoveItMotions, WithoutNumbersAreCollisions) {
   EXPECT_TRUE(Motion(scene, {0.0, 0.0, 0.0}, {0.0, nan, 0.0}).check().collision);
   scene.world->setObjectPose("map", Eigen::Isometry3d(Eigen::Translation3d(nan, 0.0, 0.0)));
   EXPECT_TRUE(sweep.check().collision);
+}
+
+// Counts what this thread takes from the heap: to make a scene takes far more than to ask in it.
+TEST_F(MoveItMotions, OfACopiedStateWithAnAttachedBodyAskInTheSameScene) {
+  scene.add("ball", ball_thing(0.05), Eigen::Vector3d(0.0, 0.5, kTip));
+  const auto held = std::make_shared<const shapes::Box>(0.02, 0.02, 0.02);
+  const Eigen::Isometry3d above(Eigen::Translation3d(0.0, 0.0, 0.3));
+  const auto attach = [&](const std::string& name) {
+    for (RobotState* state : {&sweep.from, &sweep.to}) {
+      state->clearAttachedBodies();
+      state->attachBody(std::make_unique<moveit::core::AttachedBody>(
+          scene.model->getLinkModel("tip"), name, Eigen::Isometry3d::Identity(),
+          std::vector<shapes::ShapeConstPtr>{held}, EigenSTL::vector_Isometry3d{above},
+          std::set<std::string>{}, trajectory_msgs::msg::JointTrajectory()));
+      state->update();
+    }
+  };
+  std::vector<RobotState> copies;  // they live on, so no address comes again
+  copies.reserve(10);
+  const auto allocations = [&] {
+    RobotState& from = copies.emplace_back(sweep.from);
+    RobotState& to = copies.emplace_back(sweep.to);
+    from.update();
+    to.update();
+    const std::size_t before = taken_from_heap;
+    CollisionResult result;
+    scene.ours.checkRobotCollision({}, result, from, to);
+    EXPECT_FALSE(result.collision);
+    return taken_from_heap - before;
+  };
+  attach("held");
+  const std::size_t first = allocations(), second = allocations();
+  EXPECT_LT(second, first);
+  EXPECT_EQ(allocations(), second);
+  attach("other");
+  EXPECT_GT(allocations(), second);
 }
 
 TEST_F(MoveItMotions, AreFreeOrInContactAsTheExactDistancesSay) {
