@@ -19,6 +19,14 @@
 #include <moveit/robot_model/robot_model.hpp>
 #include <moveit/robot_state/robot_state.hpp>
 
+inline moveit::core::RobotModelPtr robot_model(const std::string& urdf_text,
+                                               const std::string& srdf_text) {
+  const auto urdf = urdf::parseURDF(urdf_text);
+  const auto srdf = std::make_shared<srdf::Model>();
+  srdf->initString(*urdf, srdf_text);
+  return std::make_shared<moveit::core::RobotModel>(urdf, srdf);
+}
+
 // The joint "slide" moves the ball along x. All joints are at zero: the arm stands along z.
 inline moveit::core::RobotModelPtr arm_model() {
   static const char* const kUrdf = R"(<robot name="arm">
@@ -38,10 +46,7 @@ inline moveit::core::RobotModelPtr arm_model() {
   static const char* const kSrdf =
       R"(<robot name="arm"><group name="all"><joint name="turn"/><joint name="bend"/><joint name="slide"/></group>
   <group name="wrist"><joint name="slide"/></group></robot>)";
-  const auto urdf = urdf::parseURDF(kUrdf);
-  const auto srdf = std::make_shared<srdf::Model>();
-  srdf->initString(*urdf, kSrdf);
-  return std::make_shared<moveit::core::RobotModel>(urdf, srdf);
+  return robot_model(kUrdf, kSrdf);
 }
 
 // A shape with the same body for the oracle.
@@ -81,14 +86,14 @@ inline Thing wedge_thing(const Eigen::Vector3d& size) {
 }
 
 struct ArmScene {
-  moveit::core::RobotModelPtr model = arm_model();
+  moveit::core::RobotModelPtr model;
   collision_detection::WorldPtr world = std::make_shared<collision_detection::World>();
   moveit::core::RobotState state{model};
   clearance_moveit::CollisionEnv ours{model, world};
   collision_detection::CollisionEnvFCL fcl{model, world};
   std::map<std::string, exact::Body> things;  // in the world
 
-  ArmScene() {
+  explicit ArmScene(const moveit::core::RobotModelPtr& of = arm_model()) : model(of) {
     state.setToDefaultValues();
     state.update();
   }

@@ -2,6 +2,7 @@
 #include "arm_scene.hpp"
 
 #include <gtest/gtest.h>
+#include <octomap/octomap.h>
 
 namespace {
 
@@ -100,6 +101,47 @@ TEST(MoveItDistances, JoinTwoPointsOfTheBodiesAlongTheNormal) {
     EXPECT_LE(exact::distance(at(least.nearest_points[1]), scene.things.at(least.link_names[1])),
               1e-12);
   });
+}
+
+constexpr double kTip = 1.22, kRadius = 0.06;
+
+TEST(MoveItDistanceTypes, WithAtMostNoDistanceOfAPairStillKnowTheLeast) {
+  ArmScene scene;
+  const auto ball = std::make_shared<shapes::Sphere>(0.02);
+  for (int i = 2; i > 0; --i) {
+    scene.world->addToObject("balls", ball,
+                             Eigen::Isometry3d(Eigen::Translation3d(0.0, 0.2 * i, kTip)));
+  }
+  collision_detection::DistanceRequest request;
+  request.type = types::LIMITED;
+  request.max_contacts_per_body = 0;
+  collision_detection::DistanceResult result;
+  result.distances[{"balls", "tip"}].clear();  // an empty list, as an earlier request leaves it
+  scene.ours.distanceRobot(request, result, scene.state);
+  EXPECT_NEAR(result.minimum_distance.distance, 0.2 - 0.02 - kRadius, 1e-12);
+}
+
+TEST(MoveItDistanceTypes, OfOverlapsHaveTheDeepestLeafInWhateverOrder) {
+  for (const auto type : {types::GLOBAL, types::SINGLE, types::LIMITED, types::ALL}) {
+    ArmScene scene;
+    scene.add("box", box_thing({0.1, 0.1, 0.1}),
+              Eigen::Vector3d(0.0, 0.05 + kRadius - 0.005, kTip));
+    const auto tree = std::make_shared<octomap::OcTree>(0.1);
+    tree->updateNode(octomap::point3d(0.05F, 0.05F, 0.05F), true);
+    const auto map = std::make_shared<shapes::OcTree>(tree);
+    for (const double depth : {0.01, 0.02}) {
+      scene.world->addToObject(
+          "map", map,
+          Eigen::Isometry3d(Eigen::Translation3d(-0.05, -0.1 - kRadius + depth, kTip - 0.05)));
+    }
+    collision_detection::DistanceRequest request;
+    request.type = type;
+    request.max_contacts_per_body = 1;
+    request.enable_signed_distance = true;
+    collision_detection::DistanceResult result;
+    scene.ours.distanceRobot(request, result, scene.state);
+    EXPECT_NEAR(result.minimum_distance.distance, -0.02, 1e-12) << type;
+  }
 }
 
 TEST(MoveItVerdicts, AreExactInRandomScenesAndDifferFromFclInFewOfThem) {

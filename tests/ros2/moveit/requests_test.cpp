@@ -320,6 +320,44 @@ TEST(MoveItStates, WithoutNumbersCollide) {
   EXPECT_LE(distance(scene), 0.0);
 }
 
+TEST(MoveItStates, CollideWithObjectsWithoutAPose) {
+  const double nan = std::numeric_limits<double>::quiet_NaN();
+  const auto tree = std::make_shared<octomap::OcTree>(0.1);
+  tree->updateNode(octomap::point3d(5.05F, 0.05F, 0.05F), true);
+  const std::vector<shapes::ShapeConstPtr> all = {
+      std::make_shared<shapes::Box>(0.1, 0.1, 0.1), std::make_shared<shapes::Sphere>(0.1),
+      std::make_shared<shapes::Plane>(0.0, 0.0, 1.0, 5.0), std::make_shared<shapes::OcTree>(tree),
+      std::make_shared<shapes::Sphere>(nan)};
+  for (const auto& shape : all) {
+    for (const double bad : {nan, std::numeric_limits<double>::infinity()}) {
+      for (const bool turned : {false, true}) {
+        ArmScene scene;
+        Eigen::Isometry3d place(Eigen::Translation3d(5.0, 0.0, 0.0));
+        (turned ? place.matrix()(1, 2) : place.matrix()(1, 3)) = bad;
+        scene.world->addToObject("thing", shape, place);
+        EXPECT_TRUE(collides(scene)) << shape->type << " " << bad << " " << turned;
+        EXPECT_LE(distance(scene), 0.0) << shape->type << " " << bad << " " << turned;
+      }
+    }
+  }
+}
+
+TEST(MoveItShapes, ThatAreGoneDoNotKeepTheirOctrees) {
+  const ArmScene scene;
+  const auto world = std::make_shared<collision_detection::World>();  // FCL keeps the trees of its
+  const clearance_moveit::CollisionEnv ours(scene.model, world);
+  auto tree = std::make_shared<octomap::OcTree>(0.1);
+  tree->updateNode(octomap::point3d(5.05F, 0.05F, 0.05F), true);
+  world->addToObject("map", std::make_shared<shapes::OcTree>(tree), Eigen::Isometry3d::Identity());
+  CollisionResult result;
+  ours.checkRobotCollision({}, result, scene.state);
+  EXPECT_FALSE(result.collision);
+  world->removeObject("map");
+  const std::weak_ptr<octomap::OcTree> seen = tree;
+  tree.reset();
+  EXPECT_TRUE(seen.expired());
+}
+
 TEST(MoveItShapes, MeshesOfOneContentAreSplitOnce) {
   const auto first = clearance_moveit::parts_of(wedge_thing({0.1, 0.2, 0.3}).shape);
   EXPECT_EQ(first, clearance_moveit::parts_of(wedge_thing({0.1, 0.2, 0.3}).shape));

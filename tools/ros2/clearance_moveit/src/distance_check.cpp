@@ -52,7 +52,7 @@ void DistanceCheck::check(const PosedParts& a, const PosedParts& b, PairFilter& 
 double DistanceCheck::limit(const Pair& pair) const {
   if (is_global()) return result_.minimum_distance.distance;
   const auto known = result_.distances.find(pair);
-  if (known == result_.distances.end()) return request_.distance_threshold;
+  if (known == result_.distances.end() || known->second.empty()) return request_.distance_threshold;
   switch (request_.type) {
     case types::LIMITED:
       return known->second.size() < request_.max_contacts_per_body ? request_.distance_threshold
@@ -71,11 +71,12 @@ void DistanceCheck::measure(const PosedParts& a, const PosedParts& b, const Cand
   const Owner &owner_a = a.owners[part_a.owner], &owner_b = b.owners[part_b.owner];
   Pair pair(owner_a.name, owner_b.name);
   if (pair.second < pair.first) std::swap(pair.first, pair.second);
-  double within = limit(pair);
-  if (!(of.gap < within)) return;
+  const double least = limit(pair);
+  if (!(of.gap < least)) return;
+  double within = std::max(0.0, least);  // a leaf that is deeper is at no distance, too
   const Depth depth = request_.enable_signed_distance ? Depth::kAsked : Depth::kNotAsked;
   collision_detection::DistanceResultsData nearest;
-  nearest.distance = within;
+  nearest.distance = least;
   query_parts(part_a, a.boxes[of.i], part_b, b.boxes[of.j], within, depth, [&](const Found& found) {
     if (!(found.distance < nearest.distance)) return true;
     within = std::max(0.0, found.distance);
@@ -85,7 +86,7 @@ void DistanceCheck::measure(const PosedParts& a, const PosedParts& b, const Cand
     nearest.normal = found.normal;
     return depth == Depth::kAsked || !found.collides;
   });
-  if (!(nearest.distance < limit(pair))) return;
+  if (!(nearest.distance < least)) return;
   nearest.link_names[0] = owner_a.name;
   nearest.link_names[1] = owner_b.name;
   nearest.body_types[0] = owner_a.type;

@@ -21,7 +21,7 @@ bool is_single(const JointModel& joint) {
   return joint.getType() == JointModel::REVOLUTE || joint.getType() == JointModel::PRISMATIC;
 }
 
-// How far the joint moves.
+// How far the joint moves: a continuous one along the shorter arc.
 double step(const JointModel& joint, double from, double to) {
   const bool wraps = joint.getType() == JointModel::REVOLUTE &&
                      static_cast<const moveit::core::RevoluteJointModel&>(joint).isContinuous();
@@ -39,6 +39,24 @@ void for_each_variable(const RobotState& from, const RobotState& to, const Use& 
     }
   }
 }
+
+// What bounds how far a point of the robot moves.
+struct Travel {
+  double turned = 0.0;  // rad: the sum over all joints that turn
+  double slid = 0.0;    // m: the sum over all joints that slide
+  double out = 0.0;     // m: how far all joints that slide stand from zero at most, as a sum
+
+  // The joint stands at `at`, and moves from `begin` to `end`.
+  void add(const JointModel& joint, double at, double begin, double end) {
+    const bool slides = joint.getType() == JointModel::PRISMATIC;
+    (slides ? slid : turned) += std::max(std::abs(begin - at), std::abs(end - at));
+    if (slides) out += std::max({std::abs(at), std::abs(begin), std::abs(end)});
+  }
+  // No joint that turns has a point of the robot farther from its axis than `reach` and `out`, m.
+  [[nodiscard]] double most(double reach) const {
+    return 1.001 * (slid + (turned == 0.0 ? 0.0 : turned * (reach + out)));
+  }
+};
 
 // The scene of the last motion of a thread. As a rule the next one is in the same scene, and to
 // make a scene takes longer than to answer.
@@ -105,17 +123,22 @@ std::variant<MotionVerdict, std::string> check_motion(const RobotState& from, co
   clearance::Question question;
   question.motion.times = {0.0, 1.0};
   std::vector<double> ends;
-  double steps = 0.0;
+  Travel travel;
   std::string fault;
   for_each_variable(
       from, to, [&](const JointModel& joint, const std::string& name, double begin, double step) {
         if (is_single(joint)) {
+          if (step != to.getVariablePosition(name) - begin && !joint.getMimicRequests().empty())
+            fault = "the joint '" + joint.getName() + "' has mimics and takes the shorter arc";
           question.motion.joints.push_back(name);
           question.motion.positions.push_back(begin);
           ends.push_back(begin + step);
-          steps += std::abs(step);
-          for (const JointModel* follower : joint.getMimicRequests())
-            steps += std::abs(follower->getMimicFactor() * step);
+          travel.add(joint, begin, begin, begin + step);
+          for (const JointModel* follower : joint.getMimicRequests()) {
+            const double factor = follower->getMimicFactor(), offset = follower->getMimicOffset();
+            travel.add(*follower, *from.getJointPositions(follower), factor * begin + offset,
+                       factor * (begin + step) + offset);
+          }
           return;
         }
         if (step != 0.0)
@@ -131,7 +154,7 @@ std::variant<MotionVerdict, std::string> check_motion(const RobotState& from, co
   const moveit::core::RobotModelConstPtr& model = from.getRobotModel();
   const std::vector<Pose> rests = rests_of(from);
   const double within =
-      request.distance ? clearance::kInfinity : steps * reach(*model, rests, links);
+      request.distance ? clearance::kInfinity : travel.most(reach(*model, rests, links));
   const PosedParts leaves = with_leaves(world, robot, within);
   clearance::Answer answer;
   if (auto text = ask(model, rests, links, leaves, watched_pairs(links, leaves, filter), question,

@@ -123,19 +123,12 @@ double reach(const moveit::core::RobotModel& model, std::span<const Pose> rests,
              const PosedParts& links) {
   double sum = 0.0;
   for (const LinkModel* link : model.getLinkModels()) {
-    const JointModel& joint = *link->getParentJointModel();
     if (link->getParentLinkModel() != nullptr) sum += rests[link->getLinkIndex()].position.norm();
-    if (joint.getType() == JointModel::PRISMATIC) {
-      const moveit::core::VariableBounds& bounds = joint.getVariableBounds().front();
-      sum += bounds.position_bounded_
-                 ? std::max(std::abs(bounds.min_position_), std::abs(bounds.max_position_))
-                 : clearance::kLargestLength;
-    }
   }
   double farthest = 0.0;
   for (const Box& box : links.boxes)
     farthest = std::max(farthest, box.low.cwiseAbs().cwiseMax(box.high.cwiseAbs()).norm());
-  return 1.001 * (sum + farthest);
+  return sum + farthest;
 }
 
 PosedParts with_leaves(const PosedParts& world, const PosedParts& robot, double within) {

@@ -18,8 +18,8 @@ namespace clearance_moveit {
 // variables rest where they are in this state.
 [[nodiscard]] std::vector<Pose> rests_of(const moveit::core::RobotState& state);
 
-// No point of the robot is farther from any axis of its joints than this, m. `links` has its parts
-// in the frames of their links.
+// While all joints that slide are at zero, no point of the robot is farther from any axis of its
+// joints than this, m. `links` has its parts in the frames of their links.
 [[nodiscard]] double reach(const moveit::core::RobotModel& model, std::span<const Pose> rests,
                            const PosedParts& links);
 

@@ -24,7 +24,10 @@ struct Owner {
   const moveit::core::LinkModel* link = nullptr;  // itself, or what it is attached to; null: world
   const moveit::core::AttachedBody* attached = nullptr;  // null: none
 
-  bool operator==(const Owner&) const = default;
+  // Each copy of a state has an attached body of its own, which may be gone by now.
+  bool operator==(const Owner& other) const {
+    return name == other.name && type == other.type && link == other.link;
+  }
 };
 
 struct PosedPart {

@@ -75,10 +75,16 @@ void add_plane(const shapes::Plane& plane, ShapeParts& parts) {
   add(clearance::polyhedron_from_halfspaces(solid), parts);
 }
 
+// Trees of one resolution have the same cubes, and to make them takes about 2 ms.
 void add_octree(const shapes::OcTree& shape, ShapeParts& parts) {
+  static std::mutex mutex;
+  static std::map<double, ShapeParts> cubes;
+  const std::lock_guard lock(mutex);
+  const auto [of, is_new] = cubes.try_emplace(shape.octree->getResolution());
+  for (unsigned depth = 0; is_new && depth <= shape.octree->getTreeDepth(); ++depth)
+    add(clearance::box(Vec3::Constant(0.5 * shape.octree->getNodeSize(depth))), of->second);
+  parts = of->second;
   parts.octree = shape.octree;
-  for (unsigned depth = 0; depth <= shape.octree->getTreeDepth(); ++depth)
-    add(clearance::box(Vec3::Constant(0.5 * shape.octree->getNodeSize(depth))), parts);
 }
 
 ShapeParts make_parts(const shapes::Shape& shape) {
@@ -205,6 +211,8 @@ std::shared_ptr<const ShapeParts> shared_parts(const shapes::Shape& shape) {
 std::shared_ptr<const ShapeParts> parts_of(const shapes::ShapeConstPtr& shape, double scale,
                                            double padding) {
   static PartsCache cache;
+  // The cache would keep the tree of a shape that is gone.
+  if (shape->type == shapes::OCTREE) return shared_parts(*shape);
   const Key key{shape, scale, padding};
   if (auto found = cache.find(key)) return found;
   std::shared_ptr<const ShapeParts> made;
