@@ -63,7 +63,7 @@ TEST(StoppingPairs, CountIfTheyAreNotPublished) {
   }
 }
 
-// As select_share() leaves a robot to another share of the cell.
+// select_share() leaves a robot to another share of the cell like this.
 Scene scara_without_a_pair() {
   Scene scene =
       test::scene_of_scara({.objects = "  - {name: other, fixed: true, sphere: {radius: 0.1}}\n"
@@ -145,7 +145,7 @@ std::vector<JointSample> standing(const Scene& scene, const std::string& prefix,
   return said;
 }
 
-// What no pair of the robot is about may be unknown: a robot, and what a camera sees.
+// A robot and the bodies of a camera may be unknown if no pair of the stopping robot has them.
 TEST(StoppingPairs, AreKnownWhileARobotOrACameraOfOtherPairsWasNeverHeard) {
   const Scene beside_robot = left_scara_and(kRightScara, "", "  - {between: [right, third]}\n");
   const Scene beside_camera = left_scara_and(

@@ -60,7 +60,7 @@ TEST(GlobalMinimum, MayItselfBeWide) {
   EXPECT_FALSE(is_certified({evaluated(0.1, 0.3), evaluated(0.2, 0.4)}));
 }
 
-// What a tick may know of a pair: nothing, or bounds of this tick or of an earlier one.
+// A tick knows nothing of a pair, or has bounds of this tick or of an earlier one.
 PairBounds any_bounds(test::EveryChoice& choice) {
   constexpr double kLowers[] = {0.1, 0.2, 0.3}, kWidths[] = {0.0, 0.15};
   if (choice.flag()) return {};

@@ -147,7 +147,7 @@ TEST(Participant, GivesEveryEndpointUserDataSoThatNoRosNodeWarnsOfIt) {
             std::pair(3 * topics + 2, 0));
 }
 
-// As rmw_cyclonedds does in a process of ROS 2.
+// rmw_cyclonedds configures the domain so in a process of ROS 2.
 TEST(Participant, JoinsADomainThatAnotherLibraryOfTheProcessHasConfigured) {
   const DdsOptions dds = test::own_dds();
   const dds_entity_t domain =

@@ -1,4 +1,4 @@
-// What a participant tells the nodes of ROS 2 about itself. DDS's own discovery says which
+// A participant tells the nodes of ROS 2 its name and endpoints. DDS's own discovery says which
 // endpoints there are.
 #include "monitor/participant/ros_node.hpp"
 

@@ -1,5 +1,5 @@
-// What a catalogue has beside objects, pairs and zones: contacts with their ends, shares, and which
-// zones and robots other messages are about.
+// Contacts with their ends and shares in a catalogue, and the zones with separation and robots with
+// stops that other messages are about.
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 

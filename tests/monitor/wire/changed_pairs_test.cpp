@@ -96,7 +96,7 @@ TEST(ChangedPairs, ListAPairIfAPoseIsOlderByMoreThanTheLimitOrBecomesKnownOrUnkn
   }
 }
 
-// Two reports, of which the second has no news. `change` makes it another one.
+// Makes a report and a second one without news, which `change` may alter.
 template <class Change>
 bool second_is_full(std::uint64_t first_cycle, const Change& change) {
   ChangedPairs changes(kFullReports);

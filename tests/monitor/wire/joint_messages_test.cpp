@@ -64,7 +64,7 @@ TEST(JointNames, MeanAJointByTopicWithItsPrefixOrWithout) {
   }
 }
 
-// What a message says of a joint.
+// A joint of a message, with its values.
 struct MessageEntry {
   std::string name;
   double position;

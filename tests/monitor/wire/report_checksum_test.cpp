@@ -1,5 +1,5 @@
 // Checksums of reports, and the CRC and address of messages. Oracle: the CDR bytes, whose every bit
-// is flipped, and reports of which one field differs.
+// is flipped, and reports that differ in one field.
 #include "monitor/wire/report_checksum.hpp"
 
 #include <gtest/gtest.h>

@@ -23,7 +23,7 @@ using Values = std::array<double, 2>;  // of the joints slide and lift
 
 inline constexpr double kPeriod = 1e-3;  // s, of the loop and of the daemon
 
-// What an update has read. Positions and velocities follow from the commands of the one before.
+// The values that an update has read. Positions and velocities follow from the commands before it.
 struct Observed {
   Values positions{}, velocities{};
   double scaling = 0.0;

@@ -15,7 +15,7 @@ struct PosedParts;
 struct ShapeParts;
 
 // Distances are certified lower bounds, and bodies that are not certified disjoint collide. README
-// says of which bodies. The const functions may be called by several threads at once.
+// names the bodies. Several threads may call the const functions at once.
 class CollisionEnv : public collision_detection::CollisionEnv {
  public:
   explicit CollisionEnv(const moveit::core::RobotModelConstPtr& model, double padding = 0.0,
