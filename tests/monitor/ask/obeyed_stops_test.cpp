@@ -11,7 +11,6 @@
 #include <string>
 #include <vector>
 
-#include "monitor/pairs/kept_near.hpp"
 #include "monitor/tick/monitor.hpp"
 #include "tests/monitor/ask/obeying_robot.hpp"
 #include "tests/monitor/tick/scara_cell.hpp"
@@ -95,10 +94,8 @@ class SimulatedCell {
         monitor_(scene_) {
     for (std::uint32_t r = 0; r < scene_.robots.size(); ++r)
       robots_.emplace_back(arms_, r, age_, late, random_.next());
-    const std::vector<std::uint32_t> near = kept_nearer(scene_, 0.0);
     for (std::uint32_t p = 0; p < scene_.pairs.size(); ++p)
-      if (!std::ranges::binary_search(near, p))
-        pairs_.push_back({.pair = p, .margin = test::margin_of(scene_, p)});
+      pairs_.push_back({.pair = p, .margin = test::margin_of(scene_, p)});
   }
 
   void go(JudgedRuns& judged) {

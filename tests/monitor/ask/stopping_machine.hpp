@@ -14,7 +14,6 @@
 #include <utility>
 #include <vector>
 
-#include "monitor/pairs/kept_near.hpp"
 #include "monitor/tick/monitor.hpp"
 #include "tests/monitor/ask/arms_that_stop.hpp"
 #include "tests/monitor/tick/scara_cell.hpp"
@@ -96,9 +95,7 @@ class StoppingMachine {
         }
     person_ = static_cast<std::uint32_t>(std::ranges::find(scene.objects, "person", &Object::name) -
                                          scene.objects.begin());
-    const std::vector<std::uint32_t> near = kept_nearer(scene, 0.0);
     for (std::uint32_t p = 0; p < scene.pairs.size(); ++p) {
-      if (std::ranges::binary_search(near, p)) continue;
       const ObjectPair& of = scene.pairs[p];
       Pair pair;
       pair.pair = p;
