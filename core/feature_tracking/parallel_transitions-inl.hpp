@@ -112,13 +112,16 @@ HWY_INLINE double greatest(Vec4 v) {
 }
 
 // The same span without its edges, four sides at a time and without a branch on any of them.
+// kWider: of a facet that is wider by `margin`, m, on each side.
+template <bool kWider>
 HWY_INLINE Span within(const ConvexBody& body, const Facet& facet, Vec4 start, Vec4 direction,
-                       Span span) {
+                       Span span, double margin) {
   const double* four = body.facet_limits.row(facet.first_side);
   const Spread3 at(start), to(direction);
   const Vec4 zero = spread(0.0), none = spread(-kInfinity);
   for (std::int32_t i = 0; i < facet.limits; i += 4, four += kFourLimits) {
-    const Vec4 speed = derivatives(four, to), gap = inside_limits(four, at);
+    const Vec4 speed = derivatives(four, to), inside = inside_limits(four, at);
+    const Vec4 gap = kWider ? inside + spread(margin) : inside;
     const Vec4 crossing = -gap / speed;
     span.from = std::max(span.from, greatest(where_less(zero, speed, crossing, none)));
     span.to = std::min(span.to, -greatest(where_less(speed, zero, -crossing, none)));
@@ -136,9 +139,10 @@ HWY_INLINE double clamped(double s, double from, double to) {
 // The part of the owner's edge that faces the facet of the other body.
 template <bool kIsB>
 HWY_INLINE Span facing(const Owner<kIsB>& edge_of, const Edge& edge) {
-  return within(edge_of.other_body(), edge_of.other_body().facets[edge_of.other_side().feature],
-                edge_of.point_L_to_O(load3_padded(edge.point)),
-                edge_of.direction_L_to_O(load3_padded(edge.direction)), {edge.begin, edge.end});
+  return within<false>(
+      edge_of.other_body(), edge_of.other_body().facets[edge_of.other_side().feature],
+      edge_of.point_L_to_O(load3_padded(edge.point)),
+      edge_of.direction_L_to_O(load3_padded(edge.direction)), {edge.begin, edge.end}, 0.0);
 }
 template <bool kIsB>
 HWY_INLINE SpanEnds facing_ends(const Owner<kIsB>& edge_of, const Edge& edge) {
@@ -146,6 +150,36 @@ HWY_INLINE SpanEnds facing_ends(const Owner<kIsB>& edge_of, const Edge& edge) {
                      vec3(edge_of.point_L_to_O(load3_padded(edge.point))),
                      vec3(edge_of.direction_L_to_O(load3_padded(edge.direction))),
                      {edge.begin, edge.end});
+}
+
+// m: a point that is no farther past the end of a feature may be on it.
+HWY_INLINE double beside_margin(const TrackedPair& pair) { return 8 * kUlp * size_of(pair); }
+
+// The part of an edge, whose body has this frame, that faces a facet which is wider by `margin`.
+template <bool kIsB>
+inline HWY_NOINLINE Span facing_wider(const RelativePose4& a_from_b, const Edge& edge,
+                                      const ConvexBody& other, const Facet& facet, double margin) {
+  const BodyFrame<kIsB> frame{a_from_b};
+  return within<true>(other, facet, frame.point_L_to_O(load3_padded(edge.point)),
+                      frame.direction_L_to_O(load3_padded(edge.direction)), {edge.begin, edge.end},
+                      margin);
+}
+
+// The part of the owner's edge that lies along a side of the facet or meets a corner of it, where
+// rounding leaves no part that faces it. Bodies that touched are left to their own transitions.
+template <bool kIsB>
+HWY_INLINE Span beside(const Owner<kIsB>& edge_of, const Edge& edge) {
+  if (edge_of.pair.penetrating) return {0.0, 0.0};
+  return facing_wider<kIsB>(in_memory(edge_of.a_from_b), edge, edge_of.other_body(),
+                            edge_of.other_body().facets[edge_of.other_side().feature],
+                            beside_margin(edge_of.pair));
+}
+
+// m: the distance of a point from a feature may be greater than its distance from the plane or line
+// of the feature by this, if the point is beside the feature.
+HWY_INLINE double beyond(const TrackedPair& pair, double distance) {
+  const double margin = beside_margin(pair);
+  return margin * margin / distance;
 }
 
 // The place along an edge of the owner that is halfway between the last witness points.
@@ -162,8 +196,12 @@ inline HWY_NOINLINE Transition edge_facet(const Owner<kIsB>& owner) {
   const Edge& edge = owner.body().edges[owner.side().feature];
   const Facet& facet = owner.other_body().facets[owner.other_side().feature];
   if (!owner.body().bounded()) return Transition::kUndecided;
-  const Span span = facing(owner, edge);
-  if (span.empty()) return to_edge(owner.other_side(), facing_ends(owner, edge).next_edge);
+  Span span = facing(owner, edge);
+  const bool is_beside = span.empty();
+  if (is_beside) {
+    span = beside(owner, edge);
+    if (span.empty()) return to_edge(owner.other_side(), facing_ends(owner, edge).next_edge);
+  }
   const auto plane = plane_of(owner.opposite(), facet);
   const Vec4 start = load3_padded(edge.point), e = load3_padded(edge.direction);
   const Vec4 down = -owner.direction_A_to_L(plane.n_A);
@@ -183,6 +221,7 @@ inline HWY_NOINLINE Transition edge_facet(const Owner<kIsB>& owner) {
   if (!(distance > 0.0) && !owner.pair.penetrating) return Transition::kUndecided;
   owner.pair.found.certified = distance - tilt_error(owner.pair, std::abs(along));
   plane.place_witnesses(owner.pair.found, local, above);
+  if (HWY_UNLIKELY(is_beside)) owner.pair.found.distance += beyond(owner.pair, distance);
   return Transition::kClosest;
 }
 
@@ -198,29 +237,39 @@ HWY_INLINE bool halfway_on_facet(const TrackedPair& pair, const Facet& facet_b, 
   return std::abs(height) <= 2.0 * size_of(pair) && dot(local, local) < kInfinity;
 }
 
+enum class SlideBack {
+  kFacing,
+  kBeside,  // the point is beside the facet of the other body
+  kNowhere,
+};
+
 // Moves a point that has passed an edge of the owner's facet back to that edge, in the owner's
-// frame. False: no part of the edge faces the facet of the other body.
+// frame. kNowhere: no part of the edge faces the facet of the other body.
 template <bool kIsB>
-HWY_INLINE bool slide_back(const Owner<kIsB>& owner, std::int32_t index, Vec4& point) {
+HWY_INLINE SlideBack slide_back(const Owner<kIsB>& owner, std::int32_t index, Vec4& point) {
   const Edge& edge = owner.body().edges[index];
-  const Span span = facing(owner, edge);
-  if (HWY_UNLIKELY(span.empty())) {
-    to_edge(owner.side(), index);
-    return false;
+  Span span = facing(owner, edge);
+  const bool is_beside = span.empty();
+  if (HWY_UNLIKELY(is_beside)) {
+    span = beside(owner, edge);
+    if (span.empty()) {
+      to_edge(owner.side(), index);
+      return SlideBack::kNowhere;
+    }
   }
   const Vec4 start = load3_padded(edge.point), e = load3_padded(edge.direction);
   point = start + clamped(dot(point - start, e), span.from, span.to) * e;
-  return true;
+  return is_beside ? SlideBack::kBeside : SlideBack::kFacing;
 }
 
 // The same for a point on B's facet that has passed an edge of A's facet, or else one of B's.
-HWY_INLINE bool slide_back(TrackedPair& pair, std::int32_t crossed_a, std::int32_t crossed_b,
-                           Vec4& local) {
+HWY_INLINE SlideBack slide_back(TrackedPair& pair, std::int32_t crossed_a, std::int32_t crossed_b,
+                                Vec4& local) {
   if (crossed_a == kNone) return slide_back(Owner<true>(pair), crossed_b, local);
   Vec4 tip = point_to_a(pair.a_from_b, local);
-  if (!slide_back(Owner<false>(pair), crossed_a, tip)) return false;
+  const SlideBack back = slide_back(Owner<false>(pair), crossed_a, tip);
   local = onto(pair.b.facets[pair.on_b.feature], point_to_b(pair.a_from_b, tip));
-  return true;
+  return back;
 }
 
 // Moves to the vertex of the body's facet that is the support point along g, in the body's frame.
@@ -267,11 +316,13 @@ HWY_INLINE Transition facet_facet(TrackedPair& pair) {
   Vec4 tip = point_to_a(pair.a_from_b, local);
   const std::int32_t crossed_a = crossed_side(pair.a, facet_a, tip);
   const std::int32_t crossed_b = crossed_a == kNone ? crossed_side(pair.b, facet_b, local) : kNone;
+  auto back = SlideBack::kFacing;
   if (HWY_UNLIKELY(crossed_a != kNone || crossed_b != kNone)) {
     const Vec4 before = local;
     if (!slide_back_on_boxes(pair.a, pair.b, in_memory(pair.a_from_b), facet_a, facet_b, local)) {
       local = before;
-      if (!slide_back(pair, crossed_a, crossed_b, local)) return Transition::kMoved;
+      back = slide_back(pair, crossed_a, crossed_b, local);
+      if (back == SlideBack::kNowhere) return Transition::kMoved;
     }
     tip = point_to_a(pair.a_from_b, local);
   }
@@ -282,6 +333,9 @@ HWY_INLINE Transition facet_facet(TrackedPair& pair) {
   pair.found.a_A = tip - pair.found.distance * n;
   pair.found.n_A = n;
   pair.found.certified = pair.found.distance - tilt_error(pair, std::sqrt(tilt2));
+  if (HWY_UNLIKELY(back == SlideBack::kBeside)) {
+    pair.found.distance += beyond(pair, pair.found.distance);
+  }
   return Transition::kClosest;
 }
 
@@ -303,10 +357,13 @@ HWY_INLINE Transition parallel_edges(TrackedPair& pair, Vec4 start_b, Vec4 f) {
   const double end = begin + cosine * second.end;
   const double from = std::max(0.0, std::min(begin, end));
   const double to = std::min(first.end, std::max(begin, end));
-  if (!(from < to)) {
+  const bool is_beside =
+      HWY_UNLIKELY(!(from < to)) && from - to <= beside_margin(pair) && !pair.penetrating;
+  if (HWY_UNLIKELY(!(from < to)) && !is_beside) {
     return to_facing_ends(pair.on_a, pair.on_b, first, second, !(from < first.end), cosine > 0.0);
   }
-  const double s = clamped(halfway(Owner<false>(pair), start_a, e), from, to);
+  const double s = is_beside ? clamped(from, 0.0, first.end)
+                             : clamped(halfway(Owner<false>(pair), start_a, e), from, to);
   pair.found.a_A = start_a + s * e;
   pair.found.b_B =
       load3_padded(second.point) + ((s - begin) * cosine) * load3_padded(second.direction);
@@ -322,6 +379,7 @@ HWY_INLINE Transition parallel_edges(TrackedPair& pair, Vec4 start_b, Vec4 f) {
   pair.found.distance = distance;
   pair.found.certified = distance - tilt_error(pair, std::abs(dot(pair.found.n_A, e)) +
                                                          std::abs(dot(pair.found.n_A, f)));
+  if (is_beside) pair.found.distance += beyond(pair, distance);
   return Transition::kClosest;
 }
 

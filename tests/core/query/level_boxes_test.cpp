@@ -27,8 +27,11 @@ const std::uint64_t kSeeds = repeats(40);
 constexpr int kBoxSteps = 120;
 constexpr double kStep = 0.01, kTurn = 0.013;  // m, rad
 
-enum class Motion { kSliding, kAlongFlushEdges, kSpinning };
-constexpr Motion kMotions[] = {Motion::kSliding, Motion::kAlongFlushEdges, Motion::kSpinning};
+// The last two: an edge of B slides above an edge of A, or B turns about a corner of its own, which
+// is above a corner of A. No face of B is over a face of A.
+enum class Motion { kSliding, kAlongFlushEdges, kSpinning, kEdgeOverEdge, kCornerOverCorner };
+constexpr Motion kMotions[] = {Motion::kSliding, Motion::kAlongFlushEdges, Motion::kSpinning,
+                               Motion::kEdgeOverEdge, Motion::kCornerOverCorner};
 
 // Box B moves above box A, which stands still. Its lower face is parallel to A's upper one.
 struct LevelBoxes {
@@ -49,9 +52,8 @@ LevelBoxes level_boxes(Motion motion, std::uint64_t seed, bool rest = false) {
   made.gap = rest ? 0.0 : random.log_uniform(1e-3, 0.3);
   const Pose a = random.pose(2.0);
   const double angle = random.uniform(0.0, 6.3);
-  const Vec3 direction = motion == Motion::kAlongFlushEdges
-                             ? Vec3(0, 1, 0)
-                             : Vec3(std::cos(angle), std::sin(angle), 0);
+  const bool along_edges = motion == Motion::kAlongFlushEdges || motion == Motion::kEdgeOverEdge;
+  const Vec3 direction = along_edges ? Vec3(0, 1, 0) : Vec3(std::cos(angle), std::sin(angle), 0);
   const double up = made.half_a.z() + made.half_b.z() + made.gap;
   for (int k = 0; k < kBoxSteps; ++k) {
     Vec3 centre = kStep * (k - kBoxSteps / 2) * direction;
@@ -59,6 +61,11 @@ LevelBoxes level_boxes(Motion motion, std::uint64_t seed, bool rest = false) {
     if (motion == Motion::kSpinning) {
       centre = 0.05 * direction;  // the middle of either face lies within the other one
       turn = turned(Vec3::UnitZ(), kTurn * k + angle);
+    } else if (motion == Motion::kEdgeOverEdge) {
+      centre.x() = made.half_a.x() + made.half_b.x();
+    } else if (motion == Motion::kCornerOverCorner) {
+      turn = turned(Vec3::UnitZ(), kTurn * (k % 100));
+      centre = Vec3(made.half_a.x(), made.half_a.y(), 0.0) + turn * made.half_b;
     }
     centre.z() = up;
     made.poses.push_back({a, {a.position + a.orientation * centre, a.orientation * turn}});
@@ -109,6 +116,22 @@ TEST(LevelBoxes, BoundsHoldTrackedAndCold) {
       }
     }
   });
+}
+
+TEST(LevelBoxes, AreTrackedWhereverTheyMeet) {
+  for (const Motion motion : kMotions) {
+    int all = 0, tracked = 0;
+    for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+      const LevelBoxes boxes = level_boxes(motion, seed);
+      const DistanceJudge judge = boxes.judge();
+      TrackingState state;
+      for (const auto& [a, b] : boxes.poses) {
+        ++all;
+        tracked += judge.ask(a, b, state).path == DistancePath::kFeatureTracking;
+      }
+    }
+    EXPECT_GT(tracked, 0.98 * all) << "motion " << static_cast<int>(motion);
+  }
 }
 
 TEST(LevelBoxes, ThatRestOnEachOtherTouchAndTheirFeaturesCertifyIt) {

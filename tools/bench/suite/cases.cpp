@@ -196,6 +196,36 @@ SuiteCase spin(double separation, int motion, int steps, Random& random) {
   return c;
 }
 
+// B slides beside the top of A along an edge that one of its own edges is above: no face of it is
+// over a face of A.
+SuiteCase slide_beside(double separation, int motion, int steps, Random& random) {
+  const Vec3 half_a = random_half(random), half_b = random_half(random);
+  SuiteCase c =
+      empty_case("level, edge over edge", separation, made(box(half_a)), made(box(half_b)));
+  const Frame frame(motion, random);
+  for (int k = 0; k < steps; ++k) {
+    const double s = 1.1 * along(k, steps);
+    const Vec3 centre{half_a.x() + half_b.x(), s * (half_a.y() + half_b.y()),
+                      half_a.z() + half_b.z() + separation};
+    frame.add(c, centre, Eigen::Quaterniond::Identity(), level_distance(half_a, half_b, centre));
+  }
+  return c;
+}
+
+// B turns about the vertical through a corner of its own, which is above a corner of A.
+SuiteCase spin_at_corner(double separation, int motion, int steps, Random& random) {
+  const Vec3 half_a = random_half(random), half_b = random_half(random);
+  SuiteCase c =
+      empty_case("level, corner over corner", separation, made(box(half_a)), made(box(half_b)));
+  const Frame frame(motion, random);
+  for (int k = 0; k < steps; ++k) {
+    const Eigen::Quaterniond turn = about(Vec3::UnitZ(), 0.02 * k);
+    const Vec3 corner{half_a.x(), half_a.y(), half_a.z() + separation};
+    frame.add(c, corner + turn * half_b, turn, separation);
+  }
+  return c;
+}
+
 // A cylinder above a box: upright and sliding, or lying and rolling.
 SuiteCase can(double separation, int motion, int steps, Random& random) {
   const Vec3 half = random_half(random);
@@ -283,7 +313,9 @@ constexpr Stand kStands[] = {
      true, true},
     {"level, flush", [](double s, int m, int n, Random& r) { return slide(true, s, m, n, r); },
      true, false},
+    {"level, edge over edge", slide_beside, true, false},
     {"level, spinning", spin, true, false},
+    {"level, corner over corner", spin_at_corner, true, false},
     {"level, cans", can, true, false},
     {"grazing", graze, true, false},
     {"deep", sink, false, true},
