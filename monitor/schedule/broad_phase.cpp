@@ -12,6 +12,9 @@ namespace {
 // m. The rounding of a sum of a few lengths of a cell's size is far less. Farther than 1e4 km from
 // the origin, the rounding of the spheres themselves is larger.
 constexpr double kSumError = 1e-9;
+// An arrived object passes over so many pairs in the time of one that it activates. With thousands
+// of objects, the last ones to arrive have met nearly all others.
+constexpr std::size_t kPassedPerActivated = 8;
 constexpr double kSmoothing = 0.125;   // of the usual displacement: over eight ticks
 constexpr double kStandstill = 1e-12;  // m a tick: less counts as no motion
 // The slower object's share of the allowance is at least this, in case it suddenly moves fast.
@@ -124,13 +127,15 @@ void BroadPhase::activate(std::uint32_t pair) noexcept {
 // other has arrived as well. When all objects arrive at once, pairs are thus visited in memory
 // order.
 void BroadPhase::pair_arrivals(std::size_t most) noexcept {
+  std::size_t passes = kPassedPerActivated * most;
   for (most += activated_.size(); !everyone_met();) {
     const std::uint32_t object = arrived_[met_];
     Arrival& arrival = bodies_[object].arrival;
     if (met_pairs_ == 0) arrival.met = static_cast<std::uint32_t>(arrived_.size());
     const auto pairs = by_object_.pairs_of(object);
     for (; met_pairs_ < pairs.size(); ++met_pairs_) {
-      if (activated_.size() >= most) return;
+      if (activated_.size() >= most || passes == 0) return;
+      --passes;
       const auto [a, b] = ends(pairs[met_pairs_]);
       const Arrival& other = bodies_[a == object ? b : a].arrival;
       const bool met_before = other.rank < arrival.rank && arrival.rank < other.met;

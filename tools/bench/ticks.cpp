@@ -182,7 +182,8 @@ void register_ticks() {
                [] { return orbiting_crowd({.count = 300, .moving = 300, .order = 20}); });
   register_all("tick/warehouse_49k", {10'000, 100, 300, 7}, [] { return warehouse_crowd(1000); });
   register_all("tick/1000_all_moving_500k", {5'000, 20, 100, 5}, all_moving(1000));
-  // Plain evaluation of these would take seconds a tick.
+  // Plain evaluation of these would take up to seconds a tick.
+  register_all("tick/2000_all_moving_2000k", {2'000, 0, 0, 3}, all_moving(2000));
   register_all("tick/3000_few_moving_4500k", {5'000, 0, 100, 5},
                [] { return orbiting_crowd({.count = 3000, .moving = 150}); });
   register_sweeps();

@@ -51,6 +51,25 @@ TEST(BroadPhase, SaysSoWhenNotEveryPairHasBeenLookedAt) {
   EXPECT_GT(monitor.tick({}, kStart).lower_all, 0.0);
 }
 
+// 300 objects have 44,850 pairs, of which a tick meets 1,000. A tick passes over no more than
+// 8,000, although the last objects have met all others.
+TEST(BroadPhase, MeetsAllPairsOfManyObjectsInAsManyTicksAsTheyTake) {
+  std::vector<Object> objects;
+  for (int i = 0; i < 300; ++i) objects.push_back(test::moving("ball", {test::ball(0.1)}));
+  Scene scene = test::cell_of(std::move(objects));
+  scene.budget = 10;
+  Monitor monitor(scene);
+  std::vector<PoseSample> samples;
+  for (std::uint32_t i = 0; i < 300; ++i) {
+    samples.push_back(test::sample(i, test::at(0.3 * i, 0.001 * i * i, 0), kStart));
+  }
+  int ticks = 1;
+  for (bool met = monitor.tick(samples, kStart).minimum_certified; !met && ticks < 100; ++ticks)
+    met = monitor.tick({}, kStart).minimum_certified;
+  EXPECT_GE(ticks, 45);
+  EXPECT_LE(ticks, 52);
+}
+
 // The bound of a pair that is 1e8 m apart is rounded by more than a nanometre.
 TEST(BroadPhase, CullsPairsThatAreHoweverFarApart) {
   std::vector<Object> objects;
