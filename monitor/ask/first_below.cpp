@@ -126,6 +126,7 @@ void MotionSearch::find_first(const Stretch& stretch, const OpenList& list,
   const double middle = posture_.trajectory().middle(stretch);
   place(stretch, middle);
   const bool divides = can_divide(stretch, middle);
+  const bool one_limit = contacts_.empty() && exempt_.empty();
   OpenList left{list.end, list.end};
   for (std::size_t k = list.begin; k < list.end; ++k) {
     const Bundle& bundle = pairs_.bundles()[open_[k].bundle];
@@ -134,6 +135,7 @@ void MotionSearch::find_first(const Stretch& stretch, const OpenList& list,
     std::uint32_t kept = 0;
     for (std::uint32_t i = 0; i < open_[k].count; ++i) {
       const std::uint32_t pair = order[i];
+      if (one_limit && are_far(pair, bundle, motion, answer.margin)) continue;
       const Pair at = pair_at(pair, motion);
       const double limit = limit_until(stretch.to, false, pair, answer.margin);
       if (limit == -kInfinity) continue;

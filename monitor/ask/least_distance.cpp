@@ -72,6 +72,7 @@ void MotionSearch::minimise(const Stretch& stretch, const OpenList& list, double
     std::uint32_t kept = 0;
     for (std::uint32_t i = 0; i < open_[k].count; ++i) {
       const std::uint32_t pair = order[i];
+      if (are_far(pair, bundle, motion, all.reached)) continue;
       const auto enough = [&] {
         return std::min(question_->far_enough, all.reached - question_->tolerance);
       };
