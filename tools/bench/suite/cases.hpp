@@ -8,7 +8,8 @@
 //   reported  A pair for which users reported a wrong answer of a library; the name of the case
 //           has the number of the report. The motion is made as for `riding`.
 //   level   Boxes of one orientation: the distances along the three axes give the distance.
-//           Spinning boxes and cans stay above the top face, so the vertical distance counts.
+//           Spinning boxes and cans stay above the top face, so the vertical distance counts. The
+//           same holds for a box that turns about a corner above a corner.
 //   grazing A box above a larger one, tilted by 0.1 to 1e-12 rad: the height of its lowest vertex.
 //   deep    A body in the top of a table of 10 x 10 x 1 m: the depth of its lowest point.
 // The answers are exact for real numbers. Poses are doubles, so the true distance of the rounded
