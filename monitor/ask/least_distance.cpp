@@ -26,6 +26,7 @@ void MotionSearch::seed_upper(const OpenList& all) noexcept {
     const Bundle& bundle = pairs_.bundles()[open_[k].bundle];
     for (std::uint32_t i = 0; i < open_[k].count; ++i) {
       const std::uint32_t pair = order_[bundle.first + i];
+      if (are_far(pair, bundle, {}, least)) continue;
       const double apart = gap(pair_at(pair, {}), pair, least);
       if (apart < least) {
         least = apart;
