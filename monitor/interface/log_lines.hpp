@@ -207,7 +207,7 @@ inline constexpr LogLine<Text, Text> kFrameFound{"frame-found", kInfo,
 inline constexpr LogLine<Text, Text> kFramesLate{
     "frames-late", kWarn,
     "the last usable frame of sensor {} is {} old: its pairs are stale, or unknown without "
-    "max_speed"};
+    "max_speed, or where tf has its place"};
 inline constexpr LogLine<Text> kFramesUnplaced{
     "frames-unplaced", kWarn,
     "the place of sensor {} is not known: an input of what carries it is contradicted, or so late "
