@@ -80,24 +80,23 @@ void Displacer::visit_seen(bool first, Inputs& inputs) noexcept {
     const std::uint32_t sensor = scene_.objects[i].sensor;
     auto& [carrier, lost_ns] = inputs.sensors[sensor];
     const InputRecord& input = inputs.objects[i].input;
-    const bool is_late_on_tf = scene_.sensors[sensor].is_on_tf() &&
-                               input.age_ns(inputs.time.now_ns) > scene_.objects[i].age_limit_ns;
     const bool is_lost =
         carrier.kind == RobotBase::Kind::kObject
             ? !inputs.objects[carrier.object].known()
             : carrier.kind == RobotBase::Kind::kLink &&
                   inputs.robots.is_lost(carrier.robot, carrier.link, inputs.objects);
     if (is_lost) lost_ns = inputs.time.now_ns;
-    visit(i, first, inputs, is_late_on_tf || input.stamp_ns <= lost_ns);
+    const Trust on_time = scene_.sensors[sensor].is_on_tf() ? Trust::kWhileOnTime : Trust::kAlways;
+    visit(i, first, inputs, input.stamp_ns <= lost_ns ? Trust::kNever : on_time);
   }
 }
 
-void Displacer::visit(std::uint32_t i, bool first, Inputs& inputs, bool is_lost) noexcept {
+void Displacer::visit(std::uint32_t i, bool first, Inputs& inputs, Trust trust) noexcept {
   TrackedObject& object = inputs.objects[i];
   const bool was_late = object.input.late;
   const double might_have_moved = object.may_have_moved;
   const std::int64_t now_ns = inputs.time.now_ns;
-  advance(scene_.objects[i], now_ns, object, is_lost, inputs.response_left_ns);
+  advance(scene_.objects[i], now_ns, object, trust, inputs.response_left_ns);
   if (!object.follows_joints &&
       object.input.response_is_late(now_ns, scene_.objects[i].age_limit_ns))
     displaced_.response_is_late = true;

@@ -40,7 +40,7 @@ class Displacer {
   void add_changed(std::uint32_t object) noexcept { displaced_.changed.push_back(object); }
 
  private:
-  void visit(std::uint32_t i, bool first, Inputs& inputs, bool is_lost = false) noexcept;
+  void visit(std::uint32_t i, bool first, Inputs& inputs, Trust trust = Trust::kAlways) noexcept;
   void visit_seen(bool first, Inputs& inputs) noexcept;
   void summarise(Inputs& inputs) noexcept;
 

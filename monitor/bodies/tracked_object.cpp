@@ -240,7 +240,7 @@ void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept {
   state.repetition.add(false, now_ns);
 }
 
-void advance(const Object& object, std::int64_t now_ns, TrackedObject& state, bool is_lost,
+void advance(const Object& object, std::int64_t now_ns, TrackedObject& state, Trust trust,
              std::int64_t response_left_ns) noexcept {
   InputRecord& input = state.input;
   if (object.fixed || !input.has_value) return;
@@ -257,7 +257,7 @@ void advance(const Object& object, std::int64_t now_ns, TrackedObject& state, bo
   state.pose_last_tick_known = true;
 
   input.advance(now_ns, object.age_limit_ns, response_left_ns);
-  if (is_lost) input.contradicted = input.late = true;
+  if (trust == Trust::kNever) input.contradicted = input.late = true;
   if (state.follows_joints) {
     input.contradicted = state.joints_contradicted;
     input.late = state.joints_late;
@@ -265,6 +265,7 @@ void advance(const Object& object, std::int64_t now_ns, TrackedObject& state, bo
   } else {
     const bool may_move = input.late || (object.is_seen() && object.max_speed < kInfinity);
     const bool is_anywhere = input.contradicted || input.unanswered ||
+                             (input.late && trust == Trust::kWhileOnTime) ||
                              (object.is_seen() && may_be_anywhere(object, now_ns, state));
     state.may_have_moved = is_anywhere ? kInfinity
                            : may_move ? rounded_up(object.max_speed * seconds(input.age_ns(now_ns)))

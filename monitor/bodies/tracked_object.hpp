@@ -140,11 +140,17 @@ void follow(const LinkState& link, const Object& object, std::int64_t now_ns, Tr
 // The age of the pose in use is not known any more: it is late until the next one comes.
 void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept;
 
-// Ends the tick's input: sets the motion since the last tick, the age and the lateness. `is_lost`:
-// what carries this sensor is not known, which counts as a contradiction. An object whose pose is
-// older than `response_left_ns` may be anywhere.
-void advance(const Object& object, std::int64_t now_ns, TrackedObject& state, bool is_lost = false,
-             std::int64_t response_left_ns = kAnyAge) noexcept;
+// How far the place of a pose in use is trusted. For a sensor, what carries it decides that.
+enum class Trust : std::uint8_t {
+  kAlways,
+  kWhileOnTime,  // once the pose is late, the object may be anywhere
+  kNever,        // which counts as a contradiction
+};
+
+// Ends the tick's input: sets the motion since the last tick, the age and the lateness. An object
+// whose pose is older than `response_left_ns` may be anywhere.
+void advance(const Object& object, std::int64_t now_ns, TrackedObject& state,
+             Trust trust = Trust::kAlways, std::int64_t response_left_ns = kAnyAge) noexcept;
 
 // Accumulates this tick's motion. `bounding_radius` is that of the object around its
 // origin, m.

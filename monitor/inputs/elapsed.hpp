@@ -6,6 +6,9 @@
 
 namespace clearance {
 
+// The age, ns, given to a value whose real age is not known: a hundred years. It grows like others.
+inline constexpr std::int64_t kForgottenNs = 3'155'760'000'000'000'000;
+
 [[nodiscard]] inline double seconds(std::int64_t ns) noexcept {
   return static_cast<double>(ns) * 1e-9;
 }

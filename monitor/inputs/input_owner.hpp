@@ -13,8 +13,6 @@
 
 namespace clearance {
 
-// The age, ns, given to a value whose real age is not known: a hundred years.
-inline constexpr std::int64_t kForgottenNs = 3'155'760'000'000'000'000;
 // A source that was silent for longer has lost its inputs: others may send them.
 inline constexpr std::int64_t kSourceSilentNs = 1'000'000'000;
 // Another source that was silent for longer has gone.

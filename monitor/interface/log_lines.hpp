@@ -110,8 +110,8 @@ inline constexpr LogLine<Text> kInterventionsWritten{
 
 // ---- Objects
 
-inline constexpr LogLine<Text, std::int64_t> kPosesLate{
-    "poses-late", kWarn, "the last usable pose of {} is {} ms old: its pairs are stale"};
+inline constexpr LogLine<Text, Text> kPosesLate{
+    "poses-late", kWarn, "the last usable pose of {} is {} old: its pairs are stale"};
 inline constexpr LogLine<Text, Text> kResponseLate{
     "response-late", kWarn,
     "{} in the last second had an input beyond response_limit_ms: what depends on it is unknown. "
@@ -204,10 +204,10 @@ inline constexpr LogLine<Text, Text> kFrameFound{"frame-found", kInfo,
 
 // ---- Sensors
 
-inline constexpr LogLine<Text, std::int64_t> kFramesLate{
+inline constexpr LogLine<Text, Text> kFramesLate{
     "frames-late", kWarn,
-    "the last usable frame of sensor {} is {} ms old: its pairs are stale, or unknown without "
-    "max_speed"};
+    "the last usable frame of sensor {} is {} old: its pairs are stale, or unknown without "
+    "max_speed, or where tf has its place"};
 inline constexpr LogLine<Text> kFramesUnplaced{
     "frames-unplaced", kWarn,
     "the place of sensor {} is not known: an input of what carries it is contradicted, or so late "
@@ -242,9 +242,9 @@ inline constexpr LogLine<Text, Text, Text> kJointsHeard{"joints-heard", kInfo,
                                                         "positions of {} of {} are heard: {}"};
 inline constexpr LogLine<Text, Text, Text> kJointsBack{"joints-back", kInfo,
                                                        "positions of {} of {} are back: {}"};
-inline constexpr LogLine<Text, Text, std::int64_t, Text> kJointsLate{
+inline constexpr LogLine<Text, Text, Text, Text> kJointsLate{
     "joints-late", kWarn,
-    "the last usable positions of {} of {} are {} ms old: what hangs on them is stale ({})"};
+    "the last usable positions of {} of {} are {} old: what hangs on them is stale ({})"};
 inline constexpr LogLine<Text, Text, Text> kJointsContradict{
     "joints-contradict", kWarn,
     "positions of {} of {} contradict each other or the limits of the joints: what hangs on them "

@@ -9,6 +9,7 @@
 
 #include "config/text/sentences.hpp"
 #include "monitor/client/share_merge.hpp"
+#include "monitor/interface/age_text.hpp"
 #include "monitor/interface/pair_name.hpp"
 #include "monitor/interface/zone_cause.hpp"
 
@@ -73,7 +74,8 @@ Status distances_status(const Scene& scene, const Report& report) {
 template <class Age>
 void add_input(const Age& input, Status& status) {
   const std::string name = input.name;
-  status.values.emplace_back(name, input.age_ns < 0 ? "never seen" : milliseconds(input.age_ns));
+  const bool is_age = 0 <= input.age_ns && input.age_ns < kForgottenNs;
+  status.values.emplace_back(name, is_age ? milliseconds(input.age_ns) : age_text(input.age_ns));
   if (input.age_ns < 0) {
     status.raise(DiagnosticLevel::kError, name + " was never seen");
   } else if (input.contradicted) {

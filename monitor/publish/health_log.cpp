@@ -11,6 +11,7 @@
 #include "config/text/sentences.hpp"
 #include "monitor/app/log_line.hpp"
 #include "monitor/inputs/elapsed.hpp"
+#include "monitor/interface/age_text.hpp"
 
 namespace clearance {
 namespace {
@@ -49,11 +50,11 @@ void HealthLog::note_sensors(const Scene& scene) {
 
 // Says that an input is late, and why; or that it is back.
 void HealthLog::log_late(const clearance_msg_InputAge& input, const Poses& now) {
-  const std::int64_t age_ms = input.age_ns / 1'000'000;
+  const std::string age = age_text(input.age_ns);
   if (now.is_of_sensor && now.stale && input.contradicted) {
     log_line(lines::kFramesUnplaced, input.name);
   } else if (now.is_of_sensor && now.stale) {
-    log_line(lines::kFramesLate, input.name, age_ms);
+    log_line(lines::kFramesLate, input.name, age);
   } else if (now.is_of_sensor) {
     log_line(lines::kFramesBack, input.name);
   } else if (!now.stale) {
@@ -61,7 +62,7 @@ void HealthLog::log_late(const clearance_msg_InputAge& input, const Poses& now) 
   } else if (input.contradicted) {
     log_line(lines::kPosesContradict, input.name);
   } else {
-    log_line(lines::kPosesLate, input.name, age_ms);
+    log_line(lines::kPosesLate, input.name, age);
   }
 }
 

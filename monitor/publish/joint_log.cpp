@@ -8,6 +8,7 @@
 
 #include "config/text/sentences.hpp"
 #include "monitor/app/log_line.hpp"
+#include "monitor/interface/age_text.hpp"
 
 namespace clearance {
 void JointLog::change(const Scene& scene) {
@@ -81,7 +82,7 @@ void JointLog::log_change(const std::string& robot, State before, State now, con
                listed(names, kNamesALine));
       return;
     case State::kLate:
-      log_line(lines::kJointsLate, joints, robot, age_ns / 1'000'000, listed(names, kNamesALine));
+      log_line(lines::kJointsLate, joints, robot, age_text(age_ns), listed(names, kNamesALine));
       return;
     case State::kContradicted:
       log_line(lines::kJointsContradict, joints, robot, listed(names, kNamesALine));

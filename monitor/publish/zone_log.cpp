@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <cmath>
 #include <string>
 
 #include "monitor/app/log_line.hpp"
@@ -16,6 +17,7 @@ constexpr std::uint64_t kZonesAtOnce = 5;
 
 // Adds the clearance between the two ticks where it is printed differently.
 std::string clearance_text(const ZoneReport& zone) {
+  if (std::isinf(zone.clearance)) return "unknown";
   const std::string now = fmt::format("{:.3f}", zone.clearance);
   const std::string between = fmt::format("{:.3f}", zone.swept_clearance);
   const std::string text = fmt::format("at least {} m clear", now);

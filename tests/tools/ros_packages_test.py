@@ -144,6 +144,14 @@ def foxglove_paths(layout):
             yield topic, fields
 
 
+def plotjuggler_paths(topics):
+    """The same of each curve of PlotJuggler's layout, which separates topic and fields by the same sign."""
+    for curve in xml.parse(OURS / "plotjuggler/clearance.xml").getroot().iter("curve"):
+        name = curve.get("name")
+        topic = max((each for each in topics if name.startswith(f"{each}/")), key=len, default=name)
+        yield topic, name[len(topic) + 1 :].split("/")
+
+
 def placed_panels(place, panels):
     """The panels that a part of a layout shows, with those of the tabs in it."""
     if isinstance(place, dict):
@@ -218,6 +226,13 @@ class RosPackages(unittest.TestCase):
         standard = {"/clearance/minimum_distance", "/clearance/speed_scaling", "/clearance/markers", "/diagnostics"}
         self.assertLessEqual(standard, {topic for topic, _ in foxglove})
         for topic, fields in foxglove:
+            self.assertTrue(is_number(topic, fields, topics, types), f"{topic} {fields}")
+
+    def test_the_layout_of_plotjuggler_plots_numbers_that_messages_have(self):
+        topics, types = named_topics(), message_types()
+        curves = list(plotjuggler_paths(topics))
+        self.assertLessEqual({"/clearance/minimum_distance", "/clearance/speed_scaling"}, {topic for topic, _ in curves})
+        for topic, fields in curves:
             self.assertTrue(is_number(topic, fields, topics, types), f"{topic} {fields}")
 
     def test_the_saved_layout_plots_the_same_figures_of_ros_and_of_our_own_topics(self):

@@ -4,6 +4,8 @@
 
 #include <cmath>
 
+#include "monitor/interface/age_text.hpp"
+
 namespace clearance::watch {
 namespace {
 
@@ -34,6 +36,11 @@ std::string approach(const clearance_msg_PairDistance& pair) {
   if (std::isnan(pair.closing_speed)) return "closing at an unknown speed";
   return fmt::format("closing {:+.3f} m/s  contact in {} s", pair.closing_speed,
                      contact_time(pair.time_to_contact));
+}
+
+std::string precise_age(std::int64_t age_ns) {
+  if (age_ns >= kForgottenNs) return age_text(age_ns);
+  return fmt::format("{:.2f} ms", 1e-6 * static_cast<double>(age_ns));
 }
 
 }  // namespace clearance::watch

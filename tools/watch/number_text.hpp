@@ -1,6 +1,7 @@
 // Numbers of a report for clearance-watch, in columns of constant width; "unknown" for NaN.
 #pragma once
 
+#include <cstdint>
 #include <string>
 
 #include "clearance.h"
@@ -17,5 +18,7 @@ namespace clearance::watch {
 [[nodiscard]] std::string speed(double metres_per_second);
 // "closing +0.512 m/s  contact in    0.98 s".
 [[nodiscard]] std::string approach(const clearance_msg_PairDistance& pair);
+// "3.25 ms".
+[[nodiscard]] std::string precise_age(std::int64_t age_ns);
 
 }  // namespace clearance::watch

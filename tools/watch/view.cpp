@@ -8,6 +8,7 @@
 #include <span>
 
 #include "monitor/app/log_line.hpp"
+#include "monitor/interface/age_text.hpp"
 #include "monitor/interface/report.hpp"
 #include "tools/watch/contact_lines.hpp"
 #include "tools/watch/feed_words.hpp"
@@ -18,7 +19,6 @@
 namespace clearance::watch {
 namespace {
 
-constexpr double kMsPerNs = 1e-6;
 constexpr std::size_t kWideColumns = 160;  // enough for witness points beside each pair
 
 // The words of idl/README.md. A status of a later version counts as unknown, as it says there.
@@ -222,10 +222,9 @@ void add_inputs(std::vector<Line>& lines, const Feed& feed, std::size_t width) {
   if (report.newest_pose_ns == 0) {
     ages.add(fmt::format("no {} have come", inputs_of(feed)), Style::kWarning);
   } else {
-    ages.add(fmt::format("{} in use {:.2f} ms old, {} {:.2f} ms", inputs_of(feed),
-                         kMsPerNs * static_cast<double>(report.now_ns - report.newest_pose_ns),
-                         oldest_input(feed),
-                         kMsPerNs * static_cast<double>(report.now_ns - report.oldest_pose_ns)));
+    ages.add(fmt::format("{} in use {} old, {} {}", inputs_of(feed),
+                         precise_age(report.now_ns - report.newest_pose_ns), oldest_input(feed),
+                         precise_age(report.now_ns - report.oldest_pose_ns)));
   }
   const clearance_msg_Health* health = feed.health();
   if (health == nullptr) return;
@@ -241,10 +240,7 @@ void add_inputs(std::vector<Line>& lines, const Feed& feed, std::size_t width) {
     const clearance_msg_InputAge& input = health->inputs._buffer[i];
     if (!input.stale) continue;
     if (late_count++ == 0) late.add("late      ", Style::kDim);
-    late.add(input.age_ns < 0 ? fmt::format("{} never seen  ", input.name)
-                              : fmt::format("{} {:.0f} ms  ", input.name,
-                                            kMsPerNs * static_cast<double>(input.age_ns)),
-             Style::kWarning);
+    late.add(fmt::format("{} {}  ", input.name, age_text(input.age_ns)), Style::kWarning);
   }
   if (late_count > 0) lines.push_back(late);
   if (health->rejected._length == 0) return;
@@ -360,8 +356,8 @@ std::string plain_line(const Feed& feed, const ViewContext& context) {
                         health->overruns);
   }
   if (report.newest_pose_ns != 0) {
-    text += fmt::format("  {} {:.2f} ms", oldest_input(feed),
-                        kMsPerNs * static_cast<double>(report.now_ns - report.oldest_pose_ns));
+    text += fmt::format("  {} {}", oldest_input(feed),
+                        precise_age(report.now_ns - report.oldest_pose_ns));
   }
   return text;
 }

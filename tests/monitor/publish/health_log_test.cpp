@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "monitor/inputs/input_record.hpp"
 #include "tests/monitor/tick/small_cells.hpp"
 #include "tests/shared/logged.hpp"
 
@@ -146,6 +147,27 @@ TEST_F(HealthLogTest, TellsThatFramesAreBackWhenOneHasComeAndOnlyThen) {
   one(false);
   EXPECT_EQ(lines("frames-back"), 1u) << "the limit is another one, and no frame came";
   EXPECT_EQ(lines("frames-late"), 2u);
+}
+
+// A clock of a simulation that is silent or goes back leaves every age unknown.
+TEST_F(HealthLogTest, TellsNoAgeOfAHundredYears) {
+  std::string name = "cup";
+  std::vector<clearance_msg_InputAge> inputs(1);
+  inputs[0].name = name.data();
+  inputs[0].stale = true;
+  inputs[0].age_ns = 1'020'000'000;
+  update(inputs);
+  EXPECT_TRUE(logged_->has("pose of cup is 1020 ms old")) << logged_->text();
+  inputs[0].stale = false;
+  inputs[0].age_ns = 0;
+  update(inputs);
+  InputRecord record;
+  record.has_value = true;
+  record.forget_age(now_ns_);
+  inputs[0].stale = true;
+  inputs[0].age_ns = record.age_ns(now_ns_ + 300'000'000);
+  update(inputs);
+  EXPECT_TRUE(logged_->has("pose of cup is an unknown time old")) << logged_->text();
 }
 
 TEST_F(HealthLogTest, TellsOfOverrunsThatGoOnInPausesThatDouble) {

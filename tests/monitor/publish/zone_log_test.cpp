@@ -61,6 +61,16 @@ TEST_F(ZoneLogTest, NamesTheClearanceBetweenTicksWhereItIsLess) {
       << logged->text();
 }
 
+TEST_F(ZoneLogTest, SaysThatNothingIsKnownOfWhatMayBeAnywhere) {
+  ZoneLog zones(scene);
+  ZoneReport late = change(true);
+  late.cause = ZoneCause::kLate;
+  late.clearance = late.swept_clearance = -kInfinity;
+  zones.note(3, late, 7);
+  EXPECT_TRUE(logged->has("because poses of ball are late: ball - post, unknown [zone-late]"))
+      << logged->text();
+}
+
 TEST_F(ZoneLogTest, CountsTogetherWhatManyZonesDoAtOnce) {
   ZoneLog zones(scene);
   for (std::uint32_t zone = 0; zone < scene.zones.size(); ++zone) zones.note(zone, change(true), 1);

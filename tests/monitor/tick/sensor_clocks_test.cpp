@@ -163,6 +163,8 @@ TEST_F(DeadCamera, OnTfIsUnknownAsSoonAsItIsLate) {
   EXPECT_EQ(status(), PairStatus::kConverged);
   tick_at(1.0);
   EXPECT_EQ(status(), PairStatus::kUnknown);
+  EXPECT_TRUE(monitor->input_age(1).stale);
+  EXPECT_FALSE(monitor->input_age(1).contradicted) << "nothing came that could contradict it";
   now += 2'000'000'000;
   EXPECT_EQ(age(*monitor, 0, 1, 0), kAge) << "it is back";
   tick_at(0.001);

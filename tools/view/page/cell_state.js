@@ -1,5 +1,5 @@
 // The known state of the cell: the latest report, zones, health, and the alarms.
-import { counted, isKnown, STATUS } from "./format.js";
+import { age, counted, isKnown, STATUS } from "./format.js";
 import { LiveHistory, RecordedHistory } from "./history.js";
 
 const OVERLAPPING = STATUS.indexOf("overlapping");
@@ -150,8 +150,8 @@ export class CellState {
     const { report } = this;
     if (report && !report.minimum_known) found.push({ level: "lost", text: "Least distance not known: no pair has been evaluated" });
     if (report && report.stale + report.unknown > 0) {
-      const names = [...(this.lateObjects ?? [])].slice(0, 4).map(([object, { age }]) =>
-        `${this.scene.objects[object].name} ${age < 0 ? "never seen" : `${(age * 1e-6).toFixed(0)} ms old`}`);
+      const names = [...(this.lateObjects ?? [])].slice(0, 4).map(([object, { age: ns }]) =>
+        `${this.scene.objects[object].name} ${age(ns)}${ns < 0 ? "" : " old"}`);
       found.push({ level: "lost", text: `${counted(report.stale, "pair")} stale, ${report.unknown} unknown${names.length ? `: ${names.join(", ")}` : ""}` });
     }
     if (this.overrun && Math.abs(this.timeNs - this.overrun.ns) * 1e-9 < TOLD_FOR_S) {

@@ -17,6 +17,9 @@ export const contact = (seconds) => (Number.isNaN(seconds) ? "?" : seconds < 100
 
 export const milliseconds = (ns) => (ns < 0 ? "never" : (1e-6 * ns).toFixed(ns < 1e7 ? 1 : 0));
 
+// The age of an input: that of one whose age the daemon has forgotten is above a hundred years.
+export const age = (ns) => (ns < 0 ? "never seen" : ns >= 3155760000000000000 ? "an unknown time" : `${milliseconds(ns)} ms`);
+
 export const micro = (us) => (us < 1000 ? `${us.toFixed(us < 100 ? 1 : 0)} µs` : `${(us / 1000).toFixed(2)} ms`);
 
 export const seconds = (s, digits = 3) => `${s.toFixed(digits)} s`;

@@ -1,5 +1,5 @@
 // The header, the alarm below it and the health: readable from across the cell.
-import { counted, micro, milliseconds, mm, put } from "./format.js";
+import { age, counted, micro, milliseconds, mm, put } from "./format.js";
 import { COLOUR } from "./pair_lines.js";
 import { drawZones } from "./zone_chips.js";
 
@@ -50,8 +50,8 @@ function healthRows({ report, health }) {
     rows.push(["Pairs", `${report.pairs_total}: ${report.evaluated} evaluated, ${report.carried} carried, ${report.stale} stale, ${report.unknown} unknown`, report.stale + report.unknown > 0]);
     rows.push(["Cycle", `${report.cycle}, refreshed within ${counted(report.oldest_evaluation_cycles, "tick")}`]);
     if (report.newest_pose_ns) {
-      const age = (ns) => milliseconds(report.now_ns + report.clock_offset_ns - ns);
-      rows.push(["Inputs", `${age(report.newest_pose_ns)} to ${age(report.oldest_pose_ns)} ms old`]);
+      const since = (ns) => age(report.now_ns + report.clock_offset_ns - ns);
+      rows.push(["Inputs", `${since(report.newest_pose_ns)} to ${since(report.oldest_pose_ns)} old`]);
     }
   }
   if (!health) return rows;
@@ -61,7 +61,7 @@ function healthRows({ report, health }) {
   rows.push(["Overruns", `${health.overruns}, ${counted(health.skipped_cycles, "cycle")} skipped, ${counted(health.dropped_reports, "report")} dropped`, health.overruns + health.skipped_cycles + health.dropped_reports > 0]);
   for (const { source, batches, lost_batches } of health.sources) rows.push(["Source", `${source}: ${counted(batches, "batch", "batches")}, ${lost_batches} lost`, lost_batches > 0]);
   for (const { name, age_ns, contradicted } of health.inputs.filter(({ stale }) => stale).slice(0, 6)) {
-    rows.push(["Late", `${name}: ${age_ns < 0 ? "never seen" : `${milliseconds(age_ns)} ms`}${contradicted ? ", contradicted" : ""}`, true]);
+    rows.push(["Late", `${name}: ${age(age_ns)}${contradicted ? ", contradicted" : ""}`, true]);
   }
   for (const { object, cause, count, last } of health.rejected.slice(0, 6))
     rows.push(["Refused", `${object}: ${cause} (${count}${last ? `, last ${last}` : ""})`, true]);
