@@ -13,6 +13,7 @@
 #include "tests/shared/nonsense_state.hpp"
 #include "tests/shared/poses.hpp"
 #include "tests/shared/random.hpp"
+#include "tests/shared/vector_widths.hpp"
 
 namespace clearance {
 namespace {
@@ -148,6 +149,26 @@ TEST(Segments, AllocateNothing) {
     (void)distance(a, a, pose_a, pose_b, of_segments);
     (void)distance(b, b, pose_a, pose_b, of_points);
     EXPECT_EQ(allocations(), before) << i;
+  }
+}
+
+// The poses of a sphere need no rotation of it. A position without a component along an axis, and
+// orientations that only permute axes, are exempt from that.
+TEST(Segments, OfSpheresHaveTheBitsOfTheirRelativePose) {
+  const ConvexBody a = test::made(sphere({0, 0, 0}, 0.25)), b = test::made(sphere({0, 0, 0}, 0.5));
+  using Quat = Eigen::Quaterniond;
+  const Quat turns[] = {Quat(1, 0, 0, 0),         Quat(0, 1, 0, 0),     Quat(0, 0.6, 0.8, 0),
+                        Quat(0.5, 0.5, 0.5, 0.5), Quat(0.8, 0, 0, 0.6), Quat(0.1, 0.7, 0.1, 0.7)};
+  const Vec3 places[] = {{1, 2, 3},      {1, 2, 0}, {0, -2, 0},
+                         {1e-3, 0.5, 7}, {0, 0, 0}, {0.5, 0, 0.5}};
+  for (const Quat& turn : turns) {
+    for (const Vec3& place : places) {
+      const Pose at_a{{0.5, 0.25, 0.125}, turn}, at_b{Vec3(0.5, 0.25, 0.125) + place, turns[5]};
+      TrackingState by_poses, by_relative;
+      EXPECT_TRUE(same_bits(distance(a, b, at_a, at_b, by_poses),
+                            distance(a, b, relative_pose(at_a, at_b), by_relative)))
+          << turn.coeffs().transpose() << ", " << place.transpose();
+    }
   }
 }
 
