@@ -203,9 +203,9 @@ void NormalSearch::many_vertices() noexcept {
 
 void NormalSearch::run_bounded() noexcept {
   assert(best_.source != Source::kNothing);  // the guess, along which bounded bodies have a height
-  const bool few = DeepestVertices::fit(body_.y().anchors) &&
-                   body_.x().facets.size() <= DeepestVertices::kMostScanned;
-  if (few) {
+  if (DeepestVertices::fit(body_.y().anchors)) {
+    // X has no more edges than Y.
+    assert(body_.x().facets.size() <= DeepestVertices::kMostScanned);
     few_vertices();
   } else {
     many_vertices();

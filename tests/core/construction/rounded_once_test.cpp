@@ -82,6 +82,14 @@ TEST(ExactRounding, AHairBeyondATieOfAQuotientByARootDoesNotGoToEven) {
   EXPECT_EQ(nearest_over_root(tie, one * one << 12).value, 1.0);
 }
 
+TEST(ExactVectors, AreReducedByTheirLargestDivisorAndStayWhereTheyAreZero) {
+  Integer3 vector{-12, 0, 18}, zero{0, 0, 0};
+  reduce(vector);
+  reduce(zero);
+  EXPECT_EQ(vector, (Integer3{-2, 0, 3}));
+  EXPECT_EQ(zero, (Integer3{0, 0, 0}));
+}
+
 TEST(ExactRounding, UnitVectorsAreWithinAnUlpOfTheirDirection) {
   Random random(3);
   for (int round = 0; round < 2000; ++round) {

@@ -161,6 +161,22 @@ TEST(Shapes, OfAnySizeHaveTheSameMiddle) {
   }
 }
 
+// The corners of the sheet are rounded by ten times its thickness.
+TEST(Shapes, ASheetThinnerThanTheRoundingOfItsCornersHasAMiddleInItToThatRounding) {
+  for (const double thin : {3e-11, 1e-10, 3e-9}) {
+    const ConvexBody sheet =
+        made(polyhedron_from_halfspaces(std::vector<HalfSpace>{{{1, 2, 2}, 0},
+                                                               {{-1, -2, -2}, thin},
+                                                               {{0, 1, 0}, 1e6 + 1},
+                                                               {{0, -1, 0}, -1e6},
+                                                               {{0, 0, 1}, 1e6 + 1},
+                                                               {{0, 0, -1}, -1e6}}));
+    EXPECT_NEAR(sheet.interior.dot(Vec3(1, 2, 2)), -0.5 * thin, 0.5 * thin + 1e-8);
+    EXPECT_NEAR(sheet.interior.y(), 1e6 + 0.5, 0.5);
+    EXPECT_NEAR(sheet.interior.z(), 1e6 + 0.5, 0.5);
+  }
+}
+
 TEST(Shapes, TheSameInputGivesTheSameBits) {
   Random random(29);
   const std::vector<HalfSpace> rows = hard::random_polytope(random, 40).rows;

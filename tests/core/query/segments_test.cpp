@@ -159,11 +159,17 @@ TEST(Segments, OfSpheresHaveTheBitsOfTheirRelativePose) {
   using Quat = Eigen::Quaterniond;
   const Quat turns[] = {Quat(1, 0, 0, 0),         Quat(0, 1, 0, 0),     Quat(0, 0.6, 0.8, 0),
                         Quat(0.5, 0.5, 0.5, 0.5), Quat(0.8, 0, 0, 0.6), Quat(0.1, 0.7, 0.1, 0.7)};
-  const Vec3 places[] = {{1, 2, 3},      {1, 2, 0}, {0, -2, 0},
-                         {1e-3, 0.5, 7}, {0, 0, 0}, {0.5, 0, 0.5}};
+  const Vec3 places[] = {{1, 2, 3},
+                         {1, 2, 0},
+                         {0, -2, 0},
+                         {1e-3, 0.5, 7},
+                         {0, 0, 0},
+                         {0.5, 0, 0.5},
+                         {1e-160, 1e-160, 2e-160}};
   for (const Quat& turn : turns) {
     for (const Vec3& place : places) {
-      const Pose at_a{{0.5, 0.25, 0.125}, turn}, at_b{Vec3(0.5, 0.25, 0.125) + place, turns[5]};
+      const Vec3 first = place.norm() < 1e-100 ? Vec3::Zero() : Vec3(0.5, 0.25, 0.125);
+      const Pose at_a{first, turn}, at_b{first + place, turns[5]};
       TrackingState by_poses, by_relative;
       EXPECT_TRUE(same_bits(distance(a, b, at_a, at_b, by_poses),
                             distance(a, b, relative_pose(at_a, at_b), by_relative)))
