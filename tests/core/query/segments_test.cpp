@@ -156,9 +156,8 @@ TEST(Segments, AllocateNothing) {
 // orientations that only permute axes, are exempt from that.
 TEST(Segments, OfSpheresHaveTheBitsOfTheirRelativePose) {
   const ConvexBody a = test::made(sphere({0, 0, 0}, 0.25)), b = test::made(sphere({0, 0, 0}, 0.5));
-  using Quat = Eigen::Quaterniond;
-  const Quat turns[] = {Quat(1, 0, 0, 0),         Quat(0, 1, 0, 0),     Quat(0, 0.6, 0.8, 0),
-                        Quat(0.5, 0.5, 0.5, 0.5), Quat(0.8, 0, 0, 0.6), Quat(0.1, 0.7, 0.1, 0.7)};
+  const Eigen::Quaterniond turns[] = {{1, 0, 0, 0},         {0, 1, 0, 0},     {0, 0.6, 0.8, 0},
+                                      {0.5, 0.5, 0.5, 0.5}, {0.8, 0, 0, 0.6}, {0.1, 0.7, 0.1, 0.7}};
   const Vec3 places[] = {{1, 2, 3},
                          {1, 2, 0},
                          {0, -2, 0},
@@ -166,7 +165,7 @@ TEST(Segments, OfSpheresHaveTheBitsOfTheirRelativePose) {
                          {0, 0, 0},
                          {0.5, 0, 0.5},
                          {1e-160, 1e-160, 2e-160}};
-  for (const Quat& turn : turns) {
+  for (const Eigen::Quaterniond& turn : turns) {
     for (const Vec3& place : places) {
       const Vec3 first = place.norm() < 1e-100 ? Vec3::Zero() : Vec3(0.5, 0.25, 0.125);
       const Pose at_a{first, turn}, at_b{first + place, turns[5]};
