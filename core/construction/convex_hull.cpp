@@ -187,9 +187,7 @@ class HullBuilder {
       triangle_from_[at(edge.from)] = fresh;
       HullTriangle& outside = triangles_[at(edge.outside)].link;
       for (std::size_t i = 0; i < 3; ++i) {
-        if (outside.vertex[i] == edge.to && outside.vertex[(i + 1) % 3] == edge.from) {
-          outside.neighbor[i] = fresh;
-        }
+        if (outside.vertex[i] == edge.to) outside.neighbor[i] = fresh;  // `edge.from` follows
       }
     }
     for (std::size_t i = 0; i < horizon_.size(); ++i) {

@@ -1,6 +1,7 @@
 #include "core/construction/dual_simplex.hpp"
 
 #include <algorithm>
+#include <cassert>
 #include <cmath>
 #include <limits>
 
@@ -56,8 +57,9 @@ Integer minor(const std::array<const Integer4*, 4>& m, std::size_t row, std::siz
 
 }  // namespace
 
-// By cofactors: A^-1 = adjugate / determinant. The determinant is made positive, so that products
-// with the adjugate have the signs of those with the inverse.
+// By cofactors: A^-1 = adjugate / determinant. The determinant is positive, so products with the
+// adjugate have the signs of those with the inverse. It is 1 at the start, and pivot() makes it a
+// positive share.
 void InteriorBasis::invert(const std::vector<InteriorConstraint>& constraints) {
   std::array<const Integer4*, 4> m{};
   for (std::size_t i = 0; i < 4; ++i) m[i] = &constraints[at(member[i])].a;
@@ -69,11 +71,7 @@ void InteriorBasis::invert(const std::vector<InteriorConstraint>& constraints) {
   }
   determinant = 0;
   for (std::size_t j = 0; j < 4; ++j) determinant += (*m[0])[j] * adjugate[j][0];
-  if (sgn(determinant) > 0) return;
-  determinant = -determinant;
-  for (Integer4& line : adjugate) {
-    for (Integer& entry : line) entry = -entry;
-  }
+  assert(sgn(determinant) > 0);
 }
 
 Integer4 InteriorBasis::combination(const Integer4& a) const {

@@ -176,7 +176,7 @@ class Assembler {
     for (std::int32_t i = 0; i < facet.sides; ++i) {
       const EdgeUse use = use_of(i), next = use_of(i + 1);
       const std::int32_t vertex = body_.edges[at(use.edge)].vertex[1 - use.side];
-      if (vertex == kNone || vertex != body_.edges[at(next.edge)].vertex[next.side]) continue;
+      if (vertex == kNone) continue;  // the end of an open chain
       if (!(-along(use).dot(along(next)) > kSharpCorner)) continue;
       body_.facet_edges.push_back(use);
       ++facet.limits;

@@ -40,8 +40,7 @@ inline Vec4 middle_normal(const ConvexBody& body, const Vertex& vertex) {
     if (body.facets.empty()) {
       sum = sum - load3(body.outgoing_of(vertex, i));
     } else {
-      const std::int32_t facet = facet_around(body, vertex, i);
-      if (facet != kNone) sum = sum + load3_padded(body.facets[facet].normal);
+      sum = sum + load3_padded(body.facets[facet_around(body, vertex, i)].normal);
     }
   }
   return sum;

@@ -41,9 +41,10 @@ HWY_INLINE bool to_approaching_facet(const Edge& edge, Vec4 g, double limit, Sid
   return true;
 }
 
+// The facet beside both edges of a vertex. A segment's vertices have one edge each.
 inline std::int32_t shared_facet(const Edge& first, const Edge& second) {
   for (const std::int32_t facet : first.facet) {
-    if (facet != kNone && (facet == second.facet[0] || facet == second.facet[1])) return facet;
+    if (facet == second.facet[0] || facet == second.facet[1]) return facet;
   }
   return kNone;
 }

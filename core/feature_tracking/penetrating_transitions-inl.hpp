@@ -72,7 +72,7 @@ HWY_INLINE Transition penetrating_edges(TrackedPair& pair) {
   const double size = size_of(pair);
   const bool near = across <= kNearContact * size * sine;
   Vec4 g = with_signs(lines.n_A, spread(std::copysign(0.0, -dot(lines.between_A, lines.n_A))));
-  const auto is_closest = [&] HWY_ATTR {
+  const auto is_closest = [&]() HWY_ATTR {
     return to_end > 0.0 && both_facets_recede(first, g, limit) &&
            both_facets_recede(second, -direction_to_b(pair.a_from_b, g), limit);
   };

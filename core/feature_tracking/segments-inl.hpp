@@ -84,7 +84,7 @@ HWY_INLINE void start_at_segments(const Query4& q) {
   const Vec4 between = point_to_a(a_from_b, b.start) - a.start;
   if (b.length == 0.0) {
     to_place_on_segment(state.b, 0.0, 0.0);
-    if (a.length > 0.0) s = dot(between, a.direction);
+    s = dot(between, a.direction);  // 0 if A is a point, too
     to_place_on_segment(state.a, s, a.length);
     return;
   }

@@ -1,5 +1,6 @@
 // The depth search for two bounded bodies. It compares points with many facets at a time.
 #include <algorithm>
+#include <cassert>
 
 #include "core/model/support_function.hpp"
 #include "core/penetration/gauss_arc.hpp"
@@ -123,9 +124,7 @@ void NormalSearch::facets_of_y_by_points() noexcept {
   const ConvexBody& x = body_.x();
   DeepestPoints of_x(body_.y());
   of_x.add_sphere(facing.body_from_other(x.interior), x.inner_radius, rounding_of_place());
-  if (best_.source != Source::kNothing) {
-    of_x.add(facing.body_from_other(x.anchors[support(x, best_.n).anchor]));
-  }
+  of_x.add(facing.body_from_other(x.anchors[support(x, best_.n).anchor]));
   look_at_facets(facing, of_x);
 }
 
@@ -195,7 +194,7 @@ void NormalSearch::few_vertices() noexcept {
 void NormalSearch::many_vertices() noexcept {
   const Facing facing = x_facing_y();
   DeepestPoints of_y(body_.x());
-  of_y.add(body_.support_point_of_y(best_.source == Source::kNothing ? Vec3::UnitX() : best_.n));
+  of_y.add(body_.support_point_of_y(best_.n));
   look_at_facets(facing, of_y);
   if (ended_early()) return;
   facets_of_y_bounded();
@@ -203,9 +202,10 @@ void NormalSearch::many_vertices() noexcept {
 }
 
 void NormalSearch::run_bounded() noexcept {
-  const bool few = DeepestVertices::fit(body_.y().anchors) &&
-                   body_.x().facets.size() <= DeepestVertices::kMostScanned;
-  if (few) {
+  assert(best_.source != Source::kNothing);  // the guess, along which bounded bodies have a height
+  if (DeepestVertices::fit(body_.y().anchors)) {
+    // X has no more edges than Y.
+    assert(body_.x().facets.size() <= DeepestVertices::kMostScanned);
     few_vertices();
   } else {
     many_vertices();

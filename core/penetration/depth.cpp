@@ -105,7 +105,7 @@ Depth depth_of_segments(const ActiveFeature& a, const ActiveFeature& b,
 }  // namespace
 
 Depth depth(const ActiveFeature& a, const ActiveFeature& b, const RelativePose& a_from_b,
-            const Separator* guess) noexcept {
+            const Separator& guess) noexcept {
   assert(a_from_b.rotation.allFinite() && a_from_b.translation.allFinite());
   const Precision start = precision_of_vertices(a.body(), b.body(), a_from_b);
   if (a.body().facets.empty() && b.body().facets.empty()) return depth_of_segments(a, b, start);
@@ -113,17 +113,15 @@ Depth depth(const ActiveFeature& a, const ActiveFeature& b, const RelativePose& 
   Depth out;
   if (!body.y().bounded()) return out;  // two unbounded bodies: nothing is known
   NormalSearch search(body, kGapTolerance * start.size, a_from_b.rotation_error + kDerivativeError);
-  if (guess != nullptr) {
-    const std::int32_t of_x = body.x_is_b() ? guess->facet_of_b : guess->facet_of_a;
-    const std::int32_t of_y = body.x_is_b() ? guess->facet_of_a : guess->facet_of_b;
-    if (of_x != kNone) {
-      search.guess_facet_of_x(of_x);
-    } else if (of_y != kNone) {
-      search.guess_facet_of_y(of_y);
-    } else {
-      const std::int32_t edge_of_x = body.x_is_b() ? guess->edge_of_b : guess->edge_of_a;
-      search.guess(body.from_a(guess->normal), edge_of_x);
-    }
+  const std::int32_t of_x = body.x_is_b() ? guess.facet_of_b : guess.facet_of_a;
+  const std::int32_t of_y = body.x_is_b() ? guess.facet_of_a : guess.facet_of_b;
+  if (of_x != kNone) {
+    search.guess_facet_of_x(of_x);
+  } else if (of_y != kNone) {
+    search.guess_facet_of_y(of_y);
+  } else {
+    const std::int32_t edge_of_x = body.x_is_b() ? guess.edge_of_b : guess.edge_of_a;
+    search.guess(body.from_a(guess.normal), edge_of_x);
   }
   if (!search.ended_early()) search.run();
 

@@ -37,8 +37,8 @@ struct Depth {
   std::int32_t facet_of_a = kNone, facet_of_b = kNone;
 };
 
-// `guess`: a direction to begin with, or null; it costs or saves time and changes nothing else.
+// `guess`: a direction to begin with; it costs or saves time and changes nothing else.
 [[nodiscard]] Depth depth(const ActiveFeature& a, const ActiveFeature& b,
-                          const RelativePose& a_from_b, const Separator* guess) noexcept;
+                          const RelativePose& a_from_b, const Separator& guess) noexcept;
 
 }  // namespace clearance

@@ -49,7 +49,7 @@ Depth tracked_depth(const Query& q) noexcept {
   const ActiveFeature a(q.a, nullptr), b(q.b, &q.a_from_b);
   Separator guess;
   if (!direction_of(a, b, q.state, guess)) guess = between_interiors(a, b);
-  return depth(a, b, q.a_from_b, &guess);
+  return depth(a, b, q.a_from_b, guess);
 }
 
 void conclude_penetrating(const Query& q, const Depth& found, Answer& r) noexcept {

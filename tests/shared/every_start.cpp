@@ -33,13 +33,18 @@ std::string fault_from_any_start(DistanceJudge& judge, const Pose& pose_a, const
   const oracle::ExactDistance truth = judge.truth(pose_a, pose_b);
   for (const TrackingState::Side& side_a : every_side(judge.a())) {
     for (const TrackingState::Side& side_b : every_side(judge.b())) {
-      TrackingState state{side_a, side_b};
-      const DistanceResult result = judge.ask(pose_a, pose_b, state);
-      std::string out;
-      for (const std::string& fault : judge.faults(result, truth, pose_a, pose_b)) {
-        out += "\n  " + fault;
+      for (const bool touched : {false, true}) {
+        TrackingState state{side_a, side_b};
+        state.a.penetrating = touched;
+        const DistanceResult result = judge.ask(pose_a, pose_b, state);
+        std::string out;
+        for (const std::string& fault : judge.faults(result, truth, pose_a, pose_b)) {
+          out += "\n  " + fault;
+        }
+        if (out.empty()) continue;
+        return "from " + name_of(side_a) + " and " + name_of(side_b) +
+               (touched ? ", touching:" : ":") + out;
       }
-      if (!out.empty()) return "from " + name_of(side_a) + " and " + name_of(side_b) + ':' + out;
     }
   }
   return {};

@@ -76,6 +76,21 @@ TEST(AlphaStep, IsOfNoLengthWhereRoundingHasLetThePointPassTheBoundary) {
   EXPECT_EQ(alpha(edge, {1.0, 0.0, 0.0}).fraction, 0.0);
 }
 
+// A point past an end goes back along its edge.
+TEST(AlphaStep, IsWholeTowardsTheEdgeFromPastItsEnd) {
+  const ConvexBody body = cube();
+  for (const double sign : {1.0, -1.0}) {
+    const ActiveFeature edge =
+        active(body, nullptr, FeatureKind::kEdge, edge_around(body, {0.0, 0.5, 0.5}),
+               {sign * (0.5 + 0x1p-40), 0.5, 0.5});
+    for (const double back : {0.0, 0x1p-45, 0.25}) {
+      const Alpha step = alpha(edge, {-sign * back, 0.0, 0.0});
+      EXPECT_EQ(step.fraction, 1.0) << sign << ' ' << back;
+      EXPECT_EQ(step.blocking, kNone);
+    }
+  }
+}
+
 TEST(AlphaStep, TakesTheMoveInFrameAAndTheBoundaryInTheBodysOwn) {
   const ConvexBody body = cube();
   const RelativePose quarter =

@@ -92,6 +92,22 @@ TEST(EnclosingPolyhedron, MoreFacetsFitBetter) {
   EXPECT_LT(before, 0.06);  // twice what the best 96 planes leave
 }
 
+// A solid has some thickness. Where doubles cannot tell it from the point there is no solid.
+TEST(EnclosingPolyhedron, OfABarePointIsTheLeastSolidAroundIt) {
+  for (const auto& [x, is_made] : {std::pair{0.0, true}, {0.75, true}, {1e12, false}}) {
+    Group group;
+    group.add({.rows = {}, .points = {{x, 0.0, 0.0}}}, {});
+    const auto body = enclosing_polyhedron(group.placed);
+    ASSERT_EQ(body.has_value(), is_made) << x;
+    if (!is_made) continue;
+    for (const Facet& facet : body->facets) {
+      const double above = facet.offset - facet.normal.dot(Vec3(x, 0.0, 0.0));
+      EXPECT_GT(above, 0.0) << x;
+      EXPECT_LT(above, 1.1 * kLeastExtent) << x;
+    }
+  }
+}
+
 TEST(EnclosingPolyhedron, IsNotMadeOfNothingOrOfUnboundedBodies) {
   EXPECT_FALSE(enclosing_polyhedron({}));
   Group group = boxes_apart(1.0);

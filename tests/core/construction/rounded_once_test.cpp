@@ -70,6 +70,26 @@ TEST(ExactRounding, QuotientByARootIsTheNearestDouble) {
   EXPECT_FALSE(nearest_over_root(6, 5).exact);
 }
 
+// With square = floor(4^k numerator^2 / q^2), the quotient is q / 2^k but for one part in 2^200.
+TEST(ExactRounding, AHairBeyondATieOfAQuotientByARootDoesNotGoToEven) {
+  const Integer one = Integer(1) << 53;
+  const Integer tie = (one << 6) + (1 << 6);  // halfway between 1 and the next double, times 2^59
+  const Integer numerator = (Integer(1) << 260) + 1;
+  const Integer scaled = (numerator * numerator) << 118;
+  const Integer square = scaled / (tie * tie);
+  ASSERT_NE(square * tie * tie, scaled);
+  EXPECT_EQ(nearest_over_root(numerator, square).value, 1.0 + 0x1p-52);
+  EXPECT_EQ(nearest_over_root(tie, one * one << 12).value, 1.0);
+}
+
+TEST(ExactVectors, AreReducedByTheirLargestDivisorAndStayWhereTheyAreZero) {
+  Integer3 vector{-12, 0, 18}, zero{0, 0, 0};
+  reduce(vector);
+  reduce(zero);
+  EXPECT_EQ(vector, (Integer3{-2, 0, 3}));
+  EXPECT_EQ(zero, (Integer3{0, 0, 0}));
+}
+
 TEST(ExactRounding, UnitVectorsAreWithinAnUlpOfTheirDirection) {
   Random random(3);
   for (int round = 0; round < 2000; ++round) {

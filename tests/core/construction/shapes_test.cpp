@@ -118,9 +118,12 @@ TEST(Shapes, WhatIsNoSolidIsRefusedWithItsReason) {
               HasSubstr("point 2 lies more than 1e12 m from the origin"));
   EXPECT_THAT(refusal(box({1, 0, 1})), HasSubstr("half extent y"));
   EXPECT_THAT(refusal(box({1, 1, -1})), HasSubstr("half extent z"));
+  EXPECT_THAT(refusal(box({kInfinity, 1, 1})), HasSubstr("half extent x"));
   EXPECT_THAT(refusal(segment({1, 2, 3}, {1, 2, 3}, 0.1)), HasSubstr("the same point"));
   EXPECT_THAT(refusal(point({1, 2, kNan}, 0.1)), HasSubstr("not finite"));
-  EXPECT_THAT(refusal(point({1, 2, 3}, -0.1)), HasSubstr("radius"));
+  for (const double radius : {-0.1, kInfinity, kNan}) {
+    EXPECT_THAT(refusal(point({1, 2, 3}, radius)), HasSubstr("radius is not a finite number"));
+  }
   EXPECT_THAT(refusal(point({1, 2, 3}, 2e12)), HasSubstr("the radius is more than 1e12 m"));
   EXPECT_THAT(refusal(point({1, -2e12, 3}, 0.1)), HasSubstr("more than 1e12 m from the origin"));
   EXPECT_THAT(refusal(segment({1, 2, 3}, {1, 2, kMost}, 0.1)), HasSubstr("an end of the segment"));
@@ -131,7 +134,13 @@ TEST(Shapes, WhatIsNoSolidIsRefusedWithItsReason) {
   const std::vector<Vec2> line = {{0, 0}, {1, 1}, {2, 2}};
   EXPECT_THAT(refusal(prism(line, 0, 1)), HasSubstr("no area"));
   const std::vector<Vec2> triangle = {{0, 0}, {1, 0}, {0, 1}};
-  EXPECT_THAT(refusal(prism(triangle, 1, 1)), HasSubstr("low end"));
+  for (const auto& [low, high] :
+       {std::pair{1.0, 1.0}, {-kInfinity, 1.0}, {0.0, kInfinity}, {0.0, kNan}}) {
+    EXPECT_THAT(refusal(prism(triangle, low, high)), HasSubstr("low end"));
+  }
+  EXPECT_THAT(refusal(prism(std::span(line).first(2), 0, 1)), HasSubstr("three points, found 2"));
+  EXPECT_THAT(refusal(prism(std::vector<Vec2>{{0, 0}, {1, kNan}, {0, 1}}, 0, 1)),
+              HasSubstr("base point 2 has a coordinate that is not finite"));
 }
 
 // The centre is a quotient of moments, which are products of four lengths.
@@ -149,6 +158,22 @@ TEST(Shapes, OfAnySizeHaveTheSameMiddle) {
       EXPECT_EQ(scaled.interior, size * body.interior) << exponent;
       EXPECT_EQ(scaled.inner_radius, size * body.inner_radius) << exponent;
     }
+  }
+}
+
+// The corners of the sheet are rounded by ten times its thickness.
+TEST(Shapes, ASheetThinnerThanTheRoundingOfItsCornersHasAMiddleInItToThatRounding) {
+  for (const double thin : {3e-11, 1e-10, 3e-9}) {
+    const ConvexBody sheet =
+        made(polyhedron_from_halfspaces(std::vector<HalfSpace>{{{1, 2, 2}, 0},
+                                                               {{-1, -2, -2}, thin},
+                                                               {{0, 1, 0}, 1e6 + 1},
+                                                               {{0, -1, 0}, -1e6},
+                                                               {{0, 0, 1}, 1e6 + 1},
+                                                               {{0, 0, -1}, -1e6}}));
+    EXPECT_NEAR(sheet.interior.dot(Vec3(1, 2, 2)), -0.5 * thin, 0.5 * thin + 1e-8);
+    EXPECT_NEAR(sheet.interior.y(), 1e6 + 0.5, 0.5);
+    EXPECT_NEAR(sheet.interior.z(), 1e6 + 0.5, 0.5);
   }
 }
 

@@ -56,6 +56,15 @@ TEST(UnboundedShapes, SlabHasTwoBarePlanesAndTheirLines) {
   EXPECT_EQ(body.anchors[0], Vec3(1, 2, 2));
 }
 
+TEST(UnboundedShapes, SlabHasItsTightestPlanesInTheOrderOfTheirRows) {
+  const std::vector<HalfSpace> rows = {{{1, 2, 2}, 9}, {{-2, -4, -4}, 9}, {{2, 4, 4}, 12}};
+  const ConvexBody body = made(polyhedron_from_halfspaces(rows));
+  EXPECT_THAT(broken_invariants(body), IsEmpty());
+  ASSERT_EQ(body.facets.size(), 2U);
+  EXPECT_EQ(body.facets[0].offset, 1.5);
+  EXPECT_EQ(body.facets[1].offset, 2.0);
+}
+
 TEST(UnboundedShapes, WedgeHasOneFullLine) {
   const std::vector<HalfSpace> rows = {{{1, 1, 0}, 2}, {{-1, 1, 0}, 0}, {{0, 1, 0}, 7}};
   const ConvexBody body = made(polyhedron_from_halfspaces(rows));

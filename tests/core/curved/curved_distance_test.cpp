@@ -295,6 +295,10 @@ TEST(CurvedBodies, AreNotAskedHowDeepTheyOverlapUnlessSomebodyAsks) {
   EXPECT_EQ(s.status, DistanceStatus::kOverlapping);
   EXPECT_LE(r.lower, s.upper);
   EXPECT_LE(s.lower, r.upper);
+  const DistanceResult t = distance(a, b, pose, state, {.depth = false});
+  EXPECT_EQ(t.status, DistanceStatus::kDepthNotAsked);
+  EXPECT_LE(t.lower, s.upper);
+  EXPECT_LE(s.lower, t.upper);
 }
 
 // The unbounded bodies are compared with a box that is as long as doubles safely allow.
@@ -320,6 +324,7 @@ TEST(CurvedBodies, MeetUnboundedBodies) {
   expect(cold(slab, ball, at(5, 6, 0.5)), -1.5);
   expect(cold(corner, ball, at(0, 0, 5)), 4.0);  // apex is closest
   expect(cold(ball, slab, at(5, 6, 4)), 2.0);
+  expect(cold(ball, slab, at(5, 6, 0.5)), -1.5);
   const ConvexBody rod = made(cylinder(0.5, 2.0));
   expect(cold(wedge, rod, at(4, 3, 0)), 4.5);
   expect(cold(slab, rod, at(4, 3, 3.5)), 0.5);

@@ -1,13 +1,16 @@
 // Laws that must hold between answers about any curved bodies.
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <functional>
 
 #include "core/distance.hpp"
 #include "core/shapes.hpp"
 #include "tests/shared/made.hpp"
+#include "tests/shared/poses.hpp"
 #include "tests/shared/random.hpp"
+#include "tests/shared/vector_widths.hpp"
 
 namespace clearance {
 namespace {
@@ -159,6 +162,31 @@ TEST(CurvedLaws, TrackedIsTheSameTruthAsCold) {
       const DistanceResult tracked = distance(e.a, e.b, pose, state);
       expect_same_truth(cold(e.a, e.b, pose), tracked, 0.0, seed);
     }
+  }
+}
+
+TEST(CurvedLaws, AnswersThatNeedNoSearchForADepthAreTheSameWithoutIt) {
+  const std::array<HalfSpace, 2> slab_rows{HalfSpace{{0, 0, 1}, 1}, HalfSpace{{0, 0, -1}, 1}};
+  const ConvexBody slab = made(polyhedron_from_halfspaces(slab_rows)),
+                   floor = test::half_space({0, 0, 1}, 0.0), ball = made(ellipsoid({1, 1, 1})),
+                   rod = made(cylinder(0.5, 2.0));
+  const struct {
+    const ConvexBody &a, &b;
+    Pose pose_b;
+    double distance;
+  } cases[] = {{slab, ball, test::at(5, 6, 4), 2.0},
+               {floor, ball, test::at(5, 6, 0.25), -0.75},
+               {floor, rod, test::at(5, 6, 7), 5.0},
+               {rod, ball, test::at(0, 2, 0), 0.5},
+               {rod, rod, test::at(0, 0, 5), 1.0}};
+  for (const auto& [a, b, pose_b, exact] : cases) {
+    TrackingState with, without;
+    const RelativePose pose = relative_pose(test::at(0, 0, 0), pose_b);
+    const DistanceResult r = distance(a, b, pose, with),
+                         s = distance(a, b, pose, without, {.depth = false});
+    EXPECT_NEAR(r.distance, exact, 1e-14);
+    EXPECT_EQ(r.status, exact < 0.0 ? DistanceStatus::kOverlapping : DistanceStatus::kConverged);
+    EXPECT_TRUE(same_bits(r, s)) << exact;
   }
 }
 

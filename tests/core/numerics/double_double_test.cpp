@@ -10,6 +10,7 @@
 
 #include <cmath>
 
+#include "core/vec.hpp"
 #include "tests/shared/random.hpp"
 
 namespace clearance {
@@ -108,6 +109,17 @@ TEST(DoubleDouble, HoldsWhatADoubleLoses) {
   const DoubleDouble sum = DoubleDouble(1.0) + DoubleDouble(0x1p-80);
   EXPECT_EQ(static_cast<double>(sum), 1.0);
   EXPECT_EQ(static_cast<double>(sum - DoubleDouble(1.0)), 0x1p-80);
+}
+
+TEST(UnitAlong, IsTheVectorItselfWhereItHasNoDirection) {
+  EXPECT_EQ(unit_along(Vec3(0.0, 0.0, 0.0)), Vec3::Zero());
+  EXPECT_EQ(unit_along(Vec3(0.0, HUGE_VAL, 1.0)), Vec3(0.0, HUGE_VAL, 1.0));
+  EXPECT_TRUE(std::isnan(unit_along(Vec3(0.0, std::nan(""), 1.0)).y()));
+  for (const double length : {1e-310, 1e-200, 1.0, 1e300}) {
+    EXPECT_LE((unit_along(Vec3(3.0 * length, 0.0, -4.0 * length)) - Vec3(0.6, 0.0, -0.8)).norm(),
+              length < 1e-300 ? 1e-13 : 1e-15)
+        << length;
+  }
 }
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
+#include <tuple>
 #include <variant>
 
 #include "core/numerics/error_constants.hpp"
@@ -170,6 +171,19 @@ TEST(Distance, MeansTheExactNormalisationOfQuaternions) {
       EXPECT_LT((transform(long_b, Vec3(1, 2, 3)) - transform(pose_b, Vec3(1, 2, 3))).norm(),
                 1e-14);
     }
+  }
+}
+
+// The third orientation is the first one's inverse: only the sign of w differs.
+TEST(Distance, ByTwoPosesHasAnExactRotationOnlyWhereBothAreTurnedAlike) {
+  const Eigen::Quaterniond turn = turned(Vec3::UnitX(), 0.3);
+  const Pose a{{1, 2, 3}, turn};
+  for (const auto& [sign_of_x, sign_of_w, is_exact] :
+       {std::tuple{1.0, 1.0, true}, {-1.0, -1.0, true}, {1.0, -1.0, false}, {-1.0, 1.0, false}}) {
+    Pose b{{4, 2, 2}, turn};
+    b.orientation.x() *= sign_of_x;
+    b.orientation.w() *= sign_of_w;
+    EXPECT_EQ(relative_pose(a, b).rotation_error == 0.0, is_exact) << sign_of_x << sign_of_w;
   }
 }
 

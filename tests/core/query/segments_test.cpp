@@ -13,6 +13,7 @@
 #include "tests/shared/nonsense_state.hpp"
 #include "tests/shared/poses.hpp"
 #include "tests/shared/random.hpp"
+#include "tests/shared/vector_widths.hpp"
 
 namespace clearance {
 namespace {
@@ -148,6 +149,31 @@ TEST(Segments, AllocateNothing) {
     (void)distance(a, a, pose_a, pose_b, of_segments);
     (void)distance(b, b, pose_a, pose_b, of_points);
     EXPECT_EQ(allocations(), before) << i;
+  }
+}
+
+// The poses of a sphere need no rotation of it. A position without a component along an axis, and
+// orientations that only permute axes, are exempt from that.
+TEST(Segments, OfSpheresHaveTheBitsOfTheirRelativePose) {
+  const ConvexBody a = test::made(sphere({0, 0, 0}, 0.25)), b = test::made(sphere({0, 0, 0}, 0.5));
+  const Eigen::Quaterniond turns[] = {{1, 0, 0, 0},         {0, 1, 0, 0},     {0, 0.6, 0.8, 0},
+                                      {0.5, 0.5, 0.5, 0.5}, {0.8, 0, 0, 0.6}, {0.1, 0.7, 0.1, 0.7}};
+  const Vec3 places[] = {{1, 2, 3},
+                         {1, 2, 0},
+                         {0, -2, 0},
+                         {1e-3, 0.5, 7},
+                         {0, 0, 0},
+                         {0.5, 0, 0.5},
+                         {1e-160, 1e-160, 2e-160}};
+  for (const Eigen::Quaterniond& turn : turns) {
+    for (const Vec3& place : places) {
+      const Vec3 first = place.norm() < 1e-100 ? Vec3::Zero() : Vec3(0.5, 0.25, 0.125);
+      const Pose at_a{first, turn}, at_b{first + place, turns[5]};
+      TrackingState by_poses, by_relative;
+      EXPECT_TRUE(same_bits(distance(a, b, at_a, at_b, by_poses),
+                            distance(a, b, relative_pose(at_a, at_b), by_relative)))
+          << turn.coeffs().transpose() << ", " << place.transpose();
+    }
   }
 }
 
