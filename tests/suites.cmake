@@ -1,4 +1,5 @@
 # Writes FILE, which declares a test of ctest for each suite of PROGRAM: what clearance_suites() in CMakeLists.txt runs.
+# PROGRAM is a list: its emulator comes first, where it was built for another processor.
 execute_process(COMMAND ${PROGRAM} --gtest_list_tests "--gtest_filter=${FILTER}" OUTPUT_VARIABLE listed
                 COMMAND_ERROR_IS_FATAL ANY)
 string(REGEX REPLACE "[][;]" "" listed "${listed}") # in values of parameters; they would part a list

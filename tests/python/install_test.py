@@ -68,7 +68,8 @@ def test_a_wheel_with_its_libraries_needs_the_system_alone(tmp_path):
     assert len(inside) > 10 and all(re.fullmatch(r"lib(c|m|gcc_s|stdc\+\+)\.so\.\d+", name) for name in outside), listed
     expect_package(tmp_path / "unpacked")
     terms = {file.name for file in tmp_path.glob("unpacked/*.dist-info/licenses/*")}
-    assert {"libddsc0debian", "libgmp10"} <= terms and len(terms) <= len(inside)
+    # Debian's package of libddsc has another name in each release.
+    assert "libgmp10" in terms and any(name.startswith("libddsc") for name in terms) and len(terms) <= len(inside)
 
 
 def test_pip_names_a_build_folder_that_is_none(tmp_path):
