@@ -5,6 +5,7 @@
 
 #include <map>
 #include <string>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -41,13 +42,18 @@ class CommandingClient {
   [[nodiscard]] Command command(std::vector<CellChange> changes) {
     return {.client = name_, .request = ++request_, .changes = std::move(changes)};
   }
-  // Sends it until its result comes.
+  // Sends it until its result comes. A daemon that is busy, or of which the partner has taken the
+  // lead meanwhile, has not taken it.
   CommandResult result_of(const Command& command) {
     for (int i = 0; i < 60; ++i) {
       send(command);
       const bool came =
           eventually([&] { return find(command.request) != nullptr; }, std::chrono::seconds(1));
-      if (came) return *find(command.request);
+      if (!came) continue;
+      const CommandResult result = *find(command.request);
+      if (result.status != CommandStatus::kBusy) return result;
+      last_.erase(command.request);
+      std::this_thread::sleep_for(std::chrono::milliseconds(100));
     }
     ADD_FAILURE() << "no result of request " << command.request;
     return {.status = CommandStatus::kFailed};
