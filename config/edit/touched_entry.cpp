@@ -6,6 +6,7 @@
 
 #include "config/edit/change_document.hpp"
 #include "config/edit/object_users.hpp"
+#include "config/yaml/yaml_writer.hpp"
 
 namespace clearance {
 namespace {
