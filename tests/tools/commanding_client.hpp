@@ -42,8 +42,8 @@ class CommandingClient {
   [[nodiscard]] Command command(std::vector<CellChange> changes) {
     return {.client = name_, .request = ++request_, .changes = std::move(changes)};
   }
-  // Sends it until its result comes. A daemon that is busy, or of which the partner has taken the
-  // lead meanwhile, has not taken it.
+  // Sends it until its result comes. A daemon that is busy, or no longer leads, does nothing with a
+  // command, and expects that it is sent again.
   CommandResult result_of(const Command& command) {
     for (int i = 0; i < 60; ++i) {
       send(command);

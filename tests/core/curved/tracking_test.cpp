@@ -1,4 +1,4 @@
-// What is kept of a tracking state of curved bodies, and what is forgotten as nonsense.
+// A query of curved bodies keeps the sound parts of a tracking state and forgets nonsense.
 #include "core/curved/tracking.hpp"
 
 #include <gtest/gtest.h>

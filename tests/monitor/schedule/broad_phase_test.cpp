@@ -51,8 +51,8 @@ TEST(BroadPhase, SaysSoWhenNotEveryPairHasBeenLookedAt) {
   EXPECT_GT(monitor.tick({}, kStart).lower_all, 0.0);
 }
 
-// 300 objects have 44,850 pairs, of which a tick meets 1,000. A tick passes over no more than
-// 8,000, although the last objects have met all others.
+// 300 objects have 44,850 pairs, of which a tick activates 1,000 for the first time. A tick passes
+// over no more than 8,000, although the last objects have met all others.
 TEST(BroadPhase, MeetsAllPairsOfManyObjectsInAsManyTicksAsTheyTake) {
   std::vector<Object> objects;
   for (int i = 0; i < 300; ++i) objects.push_back(test::moving("ball", {test::ball(0.1)}));

@@ -145,7 +145,7 @@ double distance(const CollisionEnv& env, const Scene& scene, const RobotState& s
   return std::min(env.distanceSelf(state, *scene.matrix), env.distanceRobot(state, *scene.matrix));
 }
 
-// Of this thread's processor time: other programs do not count.
+// Processor time of this thread, in which other programs do not count.
 double seconds(const auto& work) {
   const auto now = [] {
     timespec time;

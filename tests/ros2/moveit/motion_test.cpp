@@ -170,7 +170,7 @@ struct MoveItSlides : testing::Test {
   ArmScene scene{robot_model(kSlides, R"(<robot name="slides"><group name="all">
     <joint name="turn"/><joint name="slide"/><joint name="follow"/></group></robot>)")};
 
-  // Of the robot among only the leaf of 1 cm that holds a point.
+  // The motion of the robot among only the leaf of 1 cm that holds a point.
   bool collides(const Motion& motion, const Eigen::Vector3d& leaf) const {
     const auto tree = std::make_shared<octomap::OcTree>(0.01);
     tree->updateNode(leaf.x(), leaf.y(), leaf.z(), true);

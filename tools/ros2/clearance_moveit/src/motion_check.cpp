@@ -21,7 +21,7 @@ bool is_single(const JointModel& joint) {
   return joint.getType() == JointModel::REVOLUTE || joint.getType() == JointModel::PRISMATIC;
 }
 
-// How far the joint moves: a continuous one along the shorter arc.
+// The joint's motion; that of a continuous joint is the shorter arc.
 double step(const JointModel& joint, double from, double to) {
   const bool wraps = joint.getType() == JointModel::REVOLUTE &&
                      static_cast<const moveit::core::RevoluteJointModel&>(joint).isContinuous();
@@ -40,7 +40,7 @@ void for_each_variable(const RobotState& from, const RobotState& to, const Use& 
   }
 }
 
-// What bounds how far a point of the robot moves.
+// The figures that bound the motion of any point of the robot.
 struct Travel {
   double turned = 0.0;  // rad: the sum over all joints that turn
   double slid = 0.0;    // m: the sum over all joints that slide
