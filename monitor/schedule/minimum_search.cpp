@@ -6,20 +6,22 @@
 namespace clearance {
 namespace {
 
-constexpr int kMostRaises = 8;  // of the horizon in one tick
+constexpr int kMostRaises = 8;            // of the horizon in one tick
+constexpr double kLargestRaise = 1000.0;  // m
 
 }  // namespace
 
 void MinimumSearch::find_minimum(const Evaluator& evaluator) noexcept {
   evaluate_closest(evaluator);
-  double step = Culling::kHeadroom;
-  for (int i = 0; i < kMostRaises; ++i, step *= 2.0) {
-    if (evaluator.culling.covers(smallest_upper_)) return;
-    if (evaluator.budget.left() == 0 || evaluator.culling.broad_phase().any_waits()) return;
-    evaluator.culling.raise_horizon(smallest_upper_, step, evaluator.tick, evaluator.budget);
+  for (int i = 0; !evaluator.culling.covers(smallest_upper_); ++i) {
+    if (i == kMostRaises || evaluator.budget.left() == 0) return;
+    if (evaluator.culling.broad_phase().any_waits()) return;
+    evaluator.culling.raise_horizon(smallest_upper_, step_, evaluator.tick, evaluator.budget);
+    step_ = std::min(2.0 * step_, kLargestRaise);
     evaluator.queue_decided();
     evaluate_closest(evaluator);
   }
+  step_ = Culling::kHeadroom;
 }
 
 // Evaluates in batches that grow, because one pair is mostly enough.

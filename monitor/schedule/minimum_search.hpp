@@ -26,6 +26,9 @@ class MinimumSearch {
   void evaluate_closest(const Evaluator& evaluator) noexcept;
 
   double smallest_upper_ = kInfinity;
+  // m: of the horizon. It doubles, also from tick to tick, until the horizon has reached the
+  // minimum.
+  double step_ = Culling::kHeadroom;
   std::vector<std::uint32_t>& candidates_;
 };
 

@@ -68,8 +68,8 @@ INSTANTIATE_TEST_SUITE_P(
     name_of);
 
 // The minimum is certified again within this number of ticks after the last fault: `refresh_s` of
-// these cells. Objects that were 30 km away need longer: 416 ticks were measured.
-int again_within(Style style) { return style == Style::kAway ? 1000 : 200; }
+// these cells.
+constexpr int kAgainWithin = 200;
 
 TEST_P(Adversaries, FindNoFalseBoundNoWrongMinimumAndNoZoneEntryMissedAndAllIsKnownAfterwards) {
   const auto [cell, style, budget] = GetParam();
@@ -90,7 +90,7 @@ TEST_P(Adversaries, FindNoFalseBoundNoWrongMinimumAndNoZoneEntryMissedAndAllIsKn
   }
   adversary.rest();
   bool is_certified = false;
-  for (int t = 0; t < again_within(style) && !is_certified; ++t) {
+  for (int t = 0; t < kAgainWithin && !is_certified; ++t) {
     const Report& report = adversary.tick(monitor);
     if (!judge.accepts(report, monitor, adversary)) return;
     ASSERT_EQ(report.unknown + report.stale, 0u) << t << " ticks after the last fault";
