@@ -89,15 +89,8 @@ void MotionSearch::decide(MarginAnswer& answer) noexcept {
     answer.second = answer_->second;
     return;
   }
-  // The first instant by itself: otherwise a motion that begins too near is divided to the end.
   found_ = uncertain_ = false;
-  if (proven_until_ <= whole.from) {
-    find_first({0, 0, whole.from, whole.from}, all_pairs(), answer);
-  }
-  if (!found_) {
-    uncertain_ = false;
-    find_first(whole, all_pairs(), answer);
-  }
+  find_first(whole, all_pairs(), answer);
   answer.verdict = found_ ? Verdict::kBelow : uncertain_ ? Verdict::kUndecided : Verdict::kFree;
   if (question_->only_verdicts && found_)
     answer.above_until = whole.from;
@@ -132,10 +125,10 @@ void MotionSearch::find_first(const Stretch& stretch, const OpenList& list,
     const Bundle& bundle = pairs_.bundles()[open_[k].bundle];
     const TipMotion motion = tip_motion(bundle, stretch, middle, posture_);
     std::uint32_t* const order = &order_[bundle.first];
-    std::uint32_t kept = 0;
-    for (std::uint32_t i = 0; i < open_[k].count; ++i) {
+    std::uint32_t count = open_[k].count, kept = 0;
+    if (one_limit) count = near_ones(bundle, count, motion, answer.margin);
+    for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t pair = order[i];
-      if (one_limit && are_far(pair, bundle, motion, answer.margin)) continue;
       const Pair at = pair_at(pair, motion);
       const double limit = limit_until(stretch.to, false, pair, answer.margin);
       if (limit == -kInfinity) continue;
@@ -182,8 +175,21 @@ void MotionSearch::find_first(const Stretch& stretch, const OpenList& list,
     }
     if (kept > 0) open_[left.end++] = {open_[k].bundle, kept};
   }
-  find_first(Trajectory::before(stretch, middle), left, answer);
-  find_first(Trajectory::after(stretch, middle), left, answer);
+  if (!left.is_empty()) find_first_in_halves(stretch, middle, left, answer);
+}
+
+void MotionSearch::find_first_in_halves(const Stretch& stretch, double middle, const OpenList& list,
+                                        MarginAnswer& answer) noexcept {
+  const Stretch whole = posture_.trajectory().whole();
+  const bool is_whole = stretch.from == whole.from && stretch.to == whole.to;
+  if (is_whole && proven_until_ <= whole.from) {
+    // The first instant by itself: otherwise a motion that begins too near is divided to the end.
+    const bool was_uncertain = uncertain_;
+    find_first({0, 0, whole.from, whole.from}, list, answer);
+    if (!found_) uncertain_ = was_uncertain;
+  }
+  find_first(Trajectory::before(stretch, middle), list, answer);
+  find_first(Trajectory::after(stretch, middle), list, answer);
 }
 
 }  // namespace clearance

@@ -24,9 +24,9 @@ void MotionSearch::seed_upper(const OpenList& all) noexcept {
   std::uint32_t closest = order_[pairs_.bundles()[open_[all.begin].bundle].first];
   for (std::size_t k = all.begin; k < all.end; ++k) {
     const Bundle& bundle = pairs_.bundles()[open_[k].bundle];
-    for (std::uint32_t i = 0; i < open_[k].count; ++i) {
+    const std::uint32_t count = near_ones(bundle, open_[k].count, {}, least);
+    for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t pair = order_[bundle.first + i];
-      if (are_far(pair, bundle, {}, least)) continue;
       const double apart = gap(pair_at(pair, {}), pair, least);
       if (apart < least) {
         least = apart;
@@ -70,10 +70,10 @@ void MotionSearch::minimise(const Stretch& stretch, const OpenList& list, double
     const Bundle& bundle = pairs_.bundles()[open_[k].bundle];
     const TipMotion motion = tip_motion(bundle, stretch, middle, posture_);
     std::uint32_t* const order = &order_[bundle.first];
+    const std::uint32_t count = near_ones(bundle, open_[k].count, motion, all.reached);
     std::uint32_t kept = 0;
-    for (std::uint32_t i = 0; i < open_[k].count; ++i) {
+    for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t pair = order[i];
-      if (are_far(pair, bundle, motion, all.reached)) continue;
       const auto enough = [&] {
         return std::min(question_->far_enough, all.reached - question_->tolerance);
       };

@@ -37,7 +37,6 @@ const char* name(Verdict verdict) noexcept {
 MotionSearch::MotionSearch(const Scene& scene)
     : scene_(scene), posture_(scene), pairs_(scene, posture_) {
   order_.resize(pairs_.pairs().size());
-  gaps_.resize(pairs_.pairs().size());
   open_.resize(kMostLevels * pairs_.bundles().size());
   std::size_t contacts = 0;
   for (const AllowedContact& contact : scene.contacts) contacts += contact.pairs.size();
@@ -212,6 +211,34 @@ MotionSearch::Pair MotionSearch::pair_at(std::uint32_t pair, const TipMotion& mo
   }
   return {base, tip, *approach,
           rounded_up(motion.moved + motion.error + approach->moved + approach->nearing.until_end)};
+}
+
+std::uint32_t MotionSearch::near_ones(const Bundle& bundle, std::uint32_t count,
+                                      const TipMotion& motion, double enough) noexcept {
+  if (posture_.any_free() || !(enough >= 0.0)) return count;
+  const Sphere& tip = posture_.part(bundle.tip).sphere_in_world;
+  const Vec3 centre = tip.centre;
+  const double reach = tip.radius + motion.moved + motion.error + enough;
+  std::uint32_t* const order = &order_[bundle.first];
+  const std::span<const PartPair> pairs = pairs_.pairs();
+  std::uint32_t near = 0;
+  const auto sort_out = [&](const auto& sphere_of) {
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const Sphere& base = sphere_of(pairs[order[i]].base);
+      const double apart = base.radius + reach;
+      const bool is_far = (base.centre - centre).squaredNorm() > (1.0 + 0x1p-40) * (apart * apart);
+      if (!is_far) std::swap(order[near++], order[i]);
+    }
+  };
+  if (bundle.base_is_link) {
+    sort_out(
+        [&](std::uint32_t part) -> const Sphere& { return posture_.part(part).sphere_in_world; });
+  } else {
+    sort_out([swept = posture_.swept_spheres()](std::uint32_t part) -> const Sphere& {
+      return swept[part];
+    });
+  }
+  return near;
 }
 
 double MotionSearch::gap(const Pair& at, std::uint32_t pair, double enough) const noexcept {

@@ -120,22 +120,11 @@ class MotionSearch {
   [[nodiscard]] OpenList all_pairs() noexcept;
   void place(const Stretch& stretch, double at) noexcept;
   [[nodiscard]] Pair pair_at(std::uint32_t pair, const TipMotion& motion) noexcept;
-  // True if the spheres around the parts show at once that the distance of a pair over the stretch
-  // is above `enough`, m, by far more than all roundings. Most pairs end here.
-  [[nodiscard]] bool are_far(std::uint32_t pair, const Bundle& bundle, const TipMotion& motion,
-                             double enough) noexcept {
-    if (posture_.any_free() || !(enough >= 0.0)) return false;
-    const Sphere& tip = posture_.part(bundle.tip).sphere_in_world;
-    const PosedPart& base = posture_.part(pairs_.pairs()[pair].base);
-    double loss = motion.moved + motion.error;
-    if (!bundle.base_carries_tip) {
-      const ObjectApproach& approach = posture_.approach(base.object);
-      loss += approach.moved + approach.nearing.until_end;
-    }
-    const double reach = tip.radius + base.sphere_in_world.radius + loss + enough;
-    const Vec3 between = base.sphere_in_world.centre - tip.centre;
-    return between.squaredNorm() > (1.0 + 0x1p-40) * (reach * reach);
-  }
+  // Moves those of the first `count` pairs of a bundle to the front that the spheres around the
+  // parts do not show to be farther apart than `enough`, m, over the stretch, by far more than all
+  // roundings. Returns how many. Most pairs end here.
+  [[nodiscard]] std::uint32_t near_ones(const Bundle& bundle, std::uint32_t count,
+                                        const TipMotion& motion, double enough) noexcept;
   [[nodiscard]] double gap(const Pair& at, std::uint32_t pair, double enough) const noexcept;
   [[nodiscard]] PairAtMiddle query(const Pair& at, std::uint32_t pair) noexcept;
   [[nodiscard]] const Bundle& bundle_of(std::uint32_t pair) const noexcept {
@@ -202,6 +191,8 @@ class MotionSearch {
   void exempt_all_but(const MarginBetween& margin);
   void mark(const std::vector<std::uint32_t>& pairs, std::uint8_t value);  // of objects; in exempt_
   void find_first(const Stretch& stretch, const OpenList& list, MarginAnswer& answer) noexcept;
+  void find_first_in_halves(const Stretch& stretch, double middle, const OpenList& list,
+                            MarginAnswer& answer) noexcept;
 
   // The distance over time (profile.cpp).
   void make_profile(const ProfileRequest& request);
@@ -223,7 +214,6 @@ class MotionSearch {
   PartPairs pairs_;
   std::vector<std::uint32_t> order_;  // indices of pairs, bundle by bundle
   std::vector<Open> open_;            // the lists of all levels, one after the other
-  std::vector<double> gaps_;          // by pair, at the present instant
   std::vector<WaitingStretch> stretches_;
   std::vector<WaitingPair> waiting_;
   std::vector<Piece> pieces_;  // a heap

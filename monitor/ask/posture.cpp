@@ -25,6 +25,7 @@ std::vector<double> radii_of(const Scene& scene, const std::vector<PosedPart>& p
 Posture::Posture(const Scene& scene)
     : scene_(scene),
       parts_(parts_of(scene)),
+      swept_(parts_.size()),
       first_part_(first_parts(scene)),
       placed_at_(parts_.size(), 0),
       chains_(scene, radii_of(scene, parts_)),
@@ -206,6 +207,15 @@ void Posture::place_resting(std::uint32_t object) noexcept {
     place_at(pose_[object], parts_[i]);
     placed_at_[i] = ~std::uint64_t{0};
   }
+  sweep(object);
+}
+
+void Posture::sweep(std::uint32_t object) noexcept {
+  const ObjectApproach& approach = approaches_[object];
+  for (std::uint32_t i = first_part_[object]; i < first_part_[object + 1]; ++i) {
+    swept_[i] = parts_[i].sphere_in_world;
+    swept_[i].radius += approach.moved + approach.nearing.until_end;
+  }
 }
 
 // The robots whose links are elsewhere at other instants.
@@ -256,6 +266,7 @@ void Posture::place_free_objects(const Stretch& stretch, double at) noexcept {
     approach.nearing = {rounded_up(swept(speed_[i], since.end + age_[i])),
                         rounded_down(swept(speed_[i], since.middle + age_[i])),
                         rounded_down(swept(speed_[i], since.begin + age_[i]))};
+    sweep(i);
   }
   moving_.place(stretch, at);
   for (const ObjectState& state : moving_.states()) {
@@ -266,6 +277,7 @@ void Posture::place_free_objects(const Stretch& stretch, double at) noexcept {
     approach.moved = rounded_up(state.shift + turning);
     approach.turned = rounded_up(turning + kPlacingError * state.pose.position.norm());
     approach.velocity = state.velocity;
+    sweep(state.object);
   }
 }
 

@@ -100,6 +100,8 @@ class Posture {
     if (placed_at_[index] < instant_) place_link_part(index);
     return parts_[index];
   }
+  // By part of objects that are no links: around all its places over the stretch.
+  [[nodiscard]] std::span<const Sphere> swept_spheres() const noexcept { return swept_; }
   // Zero for fixed objects and links.
   [[nodiscard]] const ObjectApproach& approach(std::uint32_t object) const noexcept {
     return approaches_[object];
@@ -136,6 +138,7 @@ class Posture {
   [[nodiscard]] std::optional<std::string> take_pose(const std::string& name, std::uint32_t object,
                                                      const Pose& pose, double age);
   void place_resting(std::uint32_t object) noexcept;
+  void sweep(std::uint32_t object) noexcept;
   void place_bases() noexcept;
   void note_moving() noexcept;
   void place_link_part(std::uint32_t index) noexcept;
@@ -147,6 +150,7 @@ class Posture {
   const Scene& scene_;
   std::unordered_map<std::string_view, std::uint32_t> object_named_;
   std::vector<PosedPart> parts_;
+  std::vector<Sphere> swept_;  // by part
   std::vector<std::uint32_t> first_part_;
   std::vector<std::uint64_t> placed_at_;  // by part: the number of the instant
   std::uint64_t instant_ = 0;

@@ -71,10 +71,12 @@ void MotionSearch::bound_piece(Piece& piece) noexcept {
   double lower = kInfinity, upper = kInfinity, closest = kInfinity;
   const auto look_at = [&](std::uint32_t pair, const Bundle& bundle, const TipMotion& motion) {
     const Pair at = pair_at(pair, motion);
+    const double apart = rounded_down(gap(at, pair, rounded_up(upper + at.loss)) - at.loss);
+    if (apart >= upper) return;
     const PairAtMiddle found = query(at, pair);
-    lower = std::min(lower, std::max(rounded_down(gaps_[pair] - at.loss),
-                                     lower_over(found, at.base, at.tip, bundle.keeps_direction,
-                                                motion, at.approach, kInfinity)));
+    lower =
+        std::min(lower, std::max(apart, lower_over(found, at.base, at.tip, bundle.keeps_direction,
+                                                   motion, at.approach, kInfinity)));
     piece.stated = std::max(piece.stated, 2.0 * bundle.model_error);
     upper = std::min(upper, upper_over(found, at.tip, motion, at.approach));
     const double now = std::max(0.0, found.upper + motion.error - at.approach.nearing.until_middle);
@@ -92,10 +94,11 @@ void MotionSearch::bound_piece(Piece& piece) noexcept {
   for (std::size_t k = profiled_.begin; k < profiled_.end; ++k) {
     const Bundle& bundle = pairs_.bundles()[open_[k].bundle];
     const std::uint32_t* const order = &order_[bundle.first];
-    for (std::uint32_t i = 0; i < open_[k].count; ++i) {
-      gaps_[order[i]] = gap(pair_at(order[i], {}), order[i], kInfinity);
-      if (gaps_[order[i]] < least || (k == profiled_.begin && i == 0)) {
-        least = gaps_[order[i]];
+    const std::uint32_t count = near_ones(bundle, open_[k].count, {}, least);
+    for (std::uint32_t i = 0; i < count; ++i) {
+      const double apart = gap(pair_at(order[i], {}), order[i], least);
+      if (apart < least || (k == profiled_.begin && i == 0)) {
+        least = apart;
         first = order[i];
         first_list = k;
       }
@@ -106,12 +109,10 @@ void MotionSearch::bound_piece(Piece& piece) noexcept {
   for (std::size_t k = profiled_.begin; k < profiled_.end; ++k) {
     const Bundle& bundle = pairs_.bundles()[open_[k].bundle];
     const TipMotion motion = tip_motion(bundle, stretch, middle, posture_);
-    for (std::uint32_t i = 0; i < open_[k].count; ++i) {
+    const std::uint32_t count = near_ones(bundle, open_[k].count, motion, upper);
+    for (std::uint32_t i = 0; i < count; ++i) {
       const std::uint32_t pair = order_[bundle.first + i];
-      if (pair == first) continue;
-      const double loss = pair_at(pair, motion).loss;
-      if (rounded_down(gaps_[pair] - loss) >= upper) continue;
-      look_at(pair, bundle, motion);
+      if (pair != first) look_at(pair, bundle, motion);
     }
   }
   point.lower = std::max(point.lower, std::min(lower, upper));
