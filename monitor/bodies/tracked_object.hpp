@@ -140,7 +140,7 @@ void follow(const LinkState& link, const Object& object, std::int64_t now_ns, Tr
 // The age of the pose in use is not known any more: it is late until the next one comes.
 void forget_age(std::int64_t now_ns, TrackedObject& state) noexcept;
 
-// How far the place of a pose in use is trusted. For a sensor, what carries it decides that.
+// The trust in the place of a pose in use. For a sensor, its carrier decides that.
 enum class Trust : std::uint8_t {
   kAlways,
   kWhileOnTime,  // once the pose is late, the object may be anywhere

@@ -14,8 +14,7 @@ using test::kStart;
 using test::kTick;
 
 TEST(BroadPhase, AThousandPairsThatStandStillCostNothing) {
-  std::vector<Object> objects;
-  for (int i = 0; i < 60; ++i) objects.push_back(test::moving("ball", {test::ball(0.1)}));
+  std::vector<Object> objects(60, test::moving("ball", {test::ball(0.1)}));
   Scene scene = test::cell_of(std::move(objects));
   scene.budget = 100;
   scene.refresh_s = 1e6;
@@ -35,8 +34,7 @@ TEST(BroadPhase, AThousandPairsThatStandStillCostNothing) {
 }
 
 TEST(BroadPhase, SaysSoWhenNotEveryPairHasBeenLookedAt) {
-  std::vector<Object> objects;
-  for (int i = 0; i < 60; ++i) objects.push_back(test::moving("ball", {test::ball(0.1)}));
+  std::vector<Object> objects(60, test::moving("ball", {test::ball(0.1)}));
   Scene scene = test::cell_of(std::move(objects));
   scene.budget = 10;
   Monitor monitor(scene);
@@ -54,8 +52,7 @@ TEST(BroadPhase, SaysSoWhenNotEveryPairHasBeenLookedAt) {
 // 300 objects have 44,850 pairs, of which a tick activates 1,000 for the first time. A tick passes
 // over no more than 8,000, although the last objects have met all others.
 TEST(BroadPhase, MeetsAllPairsOfManyObjectsInAsManyTicksAsTheyTake) {
-  std::vector<Object> objects;
-  for (int i = 0; i < 300; ++i) objects.push_back(test::moving("ball", {test::ball(0.1)}));
+  std::vector<Object> objects(300, test::moving("ball", {test::ball(0.1)}));
   Scene scene = test::cell_of(std::move(objects));
   scene.budget = 10;
   Monitor monitor(scene);
@@ -72,8 +69,7 @@ TEST(BroadPhase, MeetsAllPairsOfManyObjectsInAsManyTicksAsTheyTake) {
 
 // The bound of a pair that is 1e8 m apart is rounded by more than a nanometre.
 TEST(BroadPhase, CullsPairsThatAreHoweverFarApart) {
-  std::vector<Object> objects;
-  for (int i = 0; i < 3; ++i) objects.push_back(test::moving("ball", {test::ball(0.1)}));
+  std::vector<Object> objects(3, test::moving("ball", {test::ball(0.1)}));
   const Scene scene = test::cell_of(std::move(objects));
   Monitor monitor(scene);
   Random random(5);
@@ -90,8 +86,7 @@ TEST(BroadPhase, CullsPairsThatAreHoweverFarApart) {
 
 // A third object, which is far away, is not observed for up to 50 ms: it may have moved 0.1 m.
 TEST(BroadPhase, AnUnobservedObjectFarAwayMakesTheBoundOfAllPairsNoWider) {
-  std::vector<Object> objects;
-  for (int i = 0; i < 3; ++i) objects.push_back(test::moving("ball", {test::ball(0.1)}));
+  std::vector<Object> objects(3, test::moving("ball", {test::ball(0.1)}));
   objects[2].max_speed = 2.0;
   const Scene scene = test::cell_of(std::move(objects));
   Monitor monitor(scene);

@@ -166,18 +166,25 @@ Eigen::Quaterniond about(const Vec3& axis, double angle) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis));
 }
 
-// B slides across the top of A, from beyond one edge to beyond the opposite one. `flush`: along an
-// edge, and two side faces lie in one plane.
-SuiteCase slide(bool flush, double separation, int motion, int steps, Random& random) {
+// B slides above A from beyond one edge of its top to beyond the opposite one: across it; with two
+// side faces in one plane; or beside it, with an edge above an edge.
+enum class Lane : std::uint8_t { kAcross, kFlush, kBeside };
+template <Lane lane>
+SuiteCase slide(double separation, int motion, int steps, Random& random) {
+  const char* const kind = lane == Lane::kAcross  ? "level, sliding"
+                           : lane == Lane::kFlush ? "level, flush"
+                                                  : "level, edge over edge";
   const Vec3 half_a = random_half(random), half_b = random_half(random);
-  SuiteCase c = empty_case(flush ? "level, flush" : "level, sliding", separation, made(box(half_a)),
-                           made(box(half_b)));
+  SuiteCase c = empty_case(kind, separation, made(box(half_a)), made(box(half_b)));
   const Frame frame(motion, random);
-  const double across = flush ? 0.0 : random.uniform(-0.8, 0.8);
+  const double both = half_a.x() + half_b.x();
+  const double across = lane == Lane::kAcross ? random.uniform(-0.8, 0.8) * both : 0.0;
   for (int k = 0; k < steps; ++k) {
     const double s = 1.1 * along(k, steps);
-    const Vec3 centre{flush ? half_a.x() - half_b.x() : s * across * (half_a.x() + half_b.x()),
-                      s * (half_a.y() + half_b.y()), half_a.z() + half_b.z() + separation};
+    const double x = lane == Lane::kAcross  ? s * across
+                     : lane == Lane::kFlush ? half_a.x() - half_b.x()
+                                            : both;
+    const Vec3 centre{x, s * (half_a.y() + half_b.y()), half_a.z() + half_b.z() + separation};
     frame.add(c, centre, Eigen::Quaterniond::Identity(), level_distance(half_a, half_b, centre));
   }
   return c;
@@ -192,22 +199,6 @@ SuiteCase spin(double separation, int motion, int steps, Random& random) {
                     half_a.z() + half_b.z() + separation};
   for (int k = 0; k < steps; ++k) {
     frame.add(c, centre, about(Vec3::UnitZ(), 0.01 * k), separation);
-  }
-  return c;
-}
-
-// B slides beside the top of A along an edge that one of its own edges is above: no face of it is
-// over a face of A.
-SuiteCase slide_beside(double separation, int motion, int steps, Random& random) {
-  const Vec3 half_a = random_half(random), half_b = random_half(random);
-  SuiteCase c =
-      empty_case("level, edge over edge", separation, made(box(half_a)), made(box(half_b)));
-  const Frame frame(motion, random);
-  for (int k = 0; k < steps; ++k) {
-    const double s = 1.1 * along(k, steps);
-    const Vec3 centre{half_a.x() + half_b.x(), s * (half_a.y() + half_b.y()),
-                      half_a.z() + half_b.z() + separation};
-    frame.add(c, centre, Eigen::Quaterniond::Identity(), level_distance(half_a, half_b, centre));
   }
   return c;
 }
@@ -309,11 +300,9 @@ struct Stand {
   bool outside, inside;  // the separations
 };
 constexpr Stand kStands[] = {
-    {"level, sliding", [](double s, int m, int n, Random& r) { return slide(false, s, m, n, r); },
-     true, true},
-    {"level, flush", [](double s, int m, int n, Random& r) { return slide(true, s, m, n, r); },
-     true, false},
-    {"level, edge over edge", slide_beside, true, false},
+    {"level, sliding", slide<Lane::kAcross>, true, true},
+    {"level, flush", slide<Lane::kFlush>, true, false},
+    {"level, edge over edge", slide<Lane::kBeside>, true, false},
     {"level, spinning", spin, true, false},
     {"level, corner over corner", spin_at_corner, true, false},
     {"level, cans", can, true, false},
