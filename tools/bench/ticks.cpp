@@ -8,6 +8,7 @@
 #include <bit>
 #include <cmath>
 
+#include "config/cell/shares.hpp"
 #include "config/text/fnv1a.hpp"
 #include "tools/bench/clocks.hpp"
 #include "tools/bench/peers/peers.hpp"
@@ -123,6 +124,15 @@ void register_all(const std::string& name, const Ticks& ticks, const MakeCrowd& 
 #endif
 }
 
+// The pairs of one of two shares, as `shares: {auto: 2}` divides them.
+Crowd half_of(Crowd crowd, bool second) {
+  std::vector<ObjectPair>& pairs = crowd.scene.pairs;
+  const auto middle =
+      pairs.begin() + balanced_begins(expected_costs(crowd.scene.objects, pairs), 2).front();
+  second ? pairs.erase(pairs.begin(), middle) : pairs.erase(middle, pairs.end());
+  return crowd;
+}
+
 Crowd swept_crowd(const OrbitingOptions& options) {
   Crowd crowd = orbiting_crowd(options);
   crowd.swept = {{"objects", options.count},
@@ -184,6 +194,9 @@ void register_ticks() {
   register_all("tick/1000_all_moving_500k", {5'000, 20, 100, 5}, all_moving(1000));
   // Plain evaluation of these would take up to seconds a tick.
   register_all("tick/2000_all_moving_2000k", {2'000, 0, 0, 3}, all_moving(2000));
+  for (const bool second : {false, true})
+    register_all(fmt::format("tick/2000_all_moving_share_{}_of_2", second ? 2 : 1),
+                 {2'000, 0, 0, 3}, [=] { return half_of(all_moving(2000)(), second); });
   register_all("tick/3000_few_moving_4500k", {5'000, 0, 100, 5},
                [] { return orbiting_crowd({.count = 3000, .moving = 150}); });
   register_sweeps();
