@@ -120,9 +120,9 @@ class MotionSearch {
   [[nodiscard]] OpenList all_pairs() noexcept;
   void place(const Stretch& stretch, double at) noexcept;
   [[nodiscard]] Pair pair_at(std::uint32_t pair, const TipMotion& motion) noexcept;
-  // Moves those of the first `count` pairs of a bundle to the front that the spheres around the
-  // parts do not show to be farther apart than `enough`, m, over the stretch, by far more than all
-  // roundings. Returns how many. Most pairs end here.
+  // Sorts out the far ones of the first `count` pairs of a bundle, and returns how many are left. A
+  // pair is far if the spheres around its parts show that its distance over the stretch is above
+  // `enough`, m. They show so by far more than all roundings. Most pairs end here.
   [[nodiscard]] std::uint32_t near_ones(const Bundle& bundle, std::uint32_t count,
                                         const TipMotion& motion, double enough) noexcept;
   [[nodiscard]] double gap(const Pair& at, std::uint32_t pair, double enough) const noexcept;

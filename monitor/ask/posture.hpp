@@ -100,7 +100,7 @@ class Posture {
     if (placed_at_[index] < instant_) place_link_part(index);
     return parts_[index];
   }
-  // By part of objects that are no links: around all its places over the stretch.
+  // Spheres around all places of a part over the stretch, by part of objects that are no links.
   [[nodiscard]] std::span<const Sphere> swept_spheres() const noexcept { return swept_; }
   // Zero for fixed objects and links.
   [[nodiscard]] const ObjectApproach& approach(std::uint32_t object) const noexcept {

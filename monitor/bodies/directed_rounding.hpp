@@ -2,8 +2,8 @@
 // rounding error.
 //
 // One correctly rounded operation has an error of at most |x| * 2^-53. The step of 2^-50 covers
-// itself and the last six operations that led to x, if none of them cancelled. Infinities stay
-// unchanged.
+// itself and the last six operations that led to x, if none of them cancelled. An infinity stays
+// unchanged in the direction of its sign, and is NaN in the other.
 #pragma once
 
 #include <cmath>

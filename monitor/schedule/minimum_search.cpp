@@ -7,7 +7,7 @@ namespace clearance {
 namespace {
 
 constexpr int kMostRaises = 8;            // of the horizon in one tick
-constexpr double kLargestRaise = 1000.0;  // m
+constexpr double kLargestRaise = 1000.0;  // m: wider than cells are
 
 }  // namespace
 

@@ -26,8 +26,8 @@ class MinimumSearch {
   void evaluate_closest(const Evaluator& evaluator) noexcept;
 
   double smallest_upper_ = kInfinity;
-  // m: of the horizon. It doubles, also from tick to tick, until the horizon has reached the
-  // minimum.
+  // The horizon rises by this at a time, m. The step doubles, from tick to tick as well, until the
+  // horizon has reached the minimum.
   double step_ = Culling::kHeadroom;
   std::vector<std::uint32_t>& candidates_;
 };

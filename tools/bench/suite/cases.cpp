@@ -166,8 +166,8 @@ Eigen::Quaterniond about(const Vec3& axis, double angle) {
   return Eigen::Quaterniond(Eigen::AngleAxisd(angle, axis));
 }
 
-// B slides above A from beyond one edge of its top to beyond the opposite one: across it; with two
-// side faces in one plane; or beside it, with an edge above an edge.
+// B slides above A, from beyond one edge of its top to beyond the opposite one. It goes across the
+// top, with two side faces in one plane, or beside the top with an edge above an edge.
 enum class Lane : std::uint8_t { kAcross, kFlush, kBeside };
 template <Lane lane>
 SuiteCase slide(double separation, int motion, int steps, Random& random) {
