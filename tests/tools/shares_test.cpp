@@ -102,6 +102,22 @@ TEST_F(SharedCells, AKilledOneIsUnknownByNameAndComesBack) {
   EXPECT_TRUE(whole.zones().at(0).active) << "without any share, nothing is clear";
 }
 
+TEST_F(SharedCells, SayThatACatalogueOfTheFirstOneIsCorrupt) {
+  start_all();
+  Participant other(dds);
+  const dds_entity_t writer =
+      other.writer(TopicKind::kCatalogue, share_topic(cell.topics.catalogue, "boxes"));
+  Sample<clearance_msg_Catalogue> catalogue;
+  catalogue->daemon = 1;
+  for (char** text :
+       {&catalogue->scene, &catalogue->cell_yaml, &catalogue->cell_hash, &catalogue->build})
+    *text = dds_string_dup("");
+  EXPECT_TRUE(test::eventually([&] {
+    dds_write(writer, &*catalogue);
+    return daemons["left floor"]->told("share-scene-refused", {"'boxes'", "as corrupt"});
+  })) << logs();
+}
+
 TEST_F(SharedCells, DaemonsOfDifferentOnesAreNoRivalsAndTwoOfTheSameAre) {
   start_all();
   client::SharedCell whole(connection, {.late_after = milliseconds(500)});
@@ -217,6 +233,8 @@ TEST_F(SharedCells, AreOneDaemonToOrdinaryReadersBehindClearanceMerge) {
   EXPECT_TRUE(hears([&] { return boxes.in(*reports)->status != kUnknown; })) << merge.output();
   merge.signal(SIGTERM);
   EXPECT_EQ(merge.wait(), 0) << merge.output();
+  EXPECT_FALSE(merge.wrote(" 0 zones active without a share")) << merge.output();
+  EXPECT_TRUE(merge.wrote(", 0 zones wrong")) << merge.output();
 }
 
 // A report may come before the catalogue of its scene.
@@ -300,7 +318,7 @@ TEST(Several, LosesNoCycleAndHasNoZoneWrong) {
     const std::size_t end = text.find(words), begin = text.find_last_of(" \n", end - 1) + 1;
     return end == std::string::npos ? -1 : std::stoi(text.substr(begin, end - begin));
   };
-  const int lost = number_before(" cycles lost, 0 zones wrong");
+  const int lost = number_before(" cycles lost, 0 zones active without a share, 0 zones wrong");
   const int late = number_before(" late or skipped ticks");
   EXPECT_TRUE(lost >= 0 && lost <= late) << text;
   EXPECT_EQ(status, lost == 0 ? 0 : 1) << text;
