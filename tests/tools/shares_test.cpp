@@ -102,22 +102,6 @@ TEST_F(SharedCells, AKilledOneIsUnknownByNameAndComesBack) {
   EXPECT_TRUE(whole.zones().at(0).active) << "without any share, nothing is clear";
 }
 
-TEST_F(SharedCells, SayThatACatalogueOfTheFirstOneIsCorrupt) {
-  start_all();
-  Participant other(dds);
-  const dds_entity_t writer =
-      other.writer(TopicKind::kCatalogue, share_topic(cell.topics.catalogue, "boxes"));
-  Sample<clearance_msg_Catalogue> catalogue;
-  catalogue->daemon = 1;
-  for (char** text :
-       {&catalogue->scene, &catalogue->cell_yaml, &catalogue->cell_hash, &catalogue->build})
-    *text = dds_string_dup("");
-  EXPECT_TRUE(test::eventually([&] {
-    dds_write(writer, &*catalogue);
-    return daemons["left floor"]->told("share-scene-refused", {"'boxes'", "as corrupt"});
-  })) << logs();
-}
-
 TEST_F(SharedCells, DaemonsOfDifferentOnesAreNoRivalsAndTwoOfTheSameAre) {
   start_all();
   client::SharedCell whole(connection, {.late_after = milliseconds(500)});
