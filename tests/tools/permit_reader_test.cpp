@@ -150,7 +150,7 @@ TEST_F(PermitReaderTest, HoldsIfAScalingIsMissing) {
   EXPECT_TRUE(has_told("no report may be relied on: nothing heard"));
 }
 
-// Its scaling would be that of another robot.
+// The scaling would be that of another robot.
 TEST(PermitsOfStops, HoldIfTheCellLacksAJointOfTheRobot) {
   const test::ScratchFolder folder;
   test::write_text(folder / "scara.urdf", test::kScaraUrdf);

@@ -37,7 +37,7 @@ struct PermitOptions {
   std::vector<std::string> pairs = {};  // "hand - table"; none: all pairs of the cell
   std::vector<std::string> zones = {};  // those that hold while they are active
   bool obeys_scaling = false;           // of zones with `separation` and of stops
-  // Those of the robot. A cell that states stops has to have all of them, if its scaling is obeyed.
+  // The joints of the robot: a cell whose stops are obeyed has to have all of them.
   std::vector<std::string> joints = {};
   clearance::client::StreamOptions stream = {.depth = 4};
 };
