@@ -63,9 +63,8 @@ SimulatedTime::Change SimulatedTime::note(std::int64_t time_ns, std::int64_t sen
     const std::int64_t step_ns = elapsed(before.clock_ns, time_ns);
     now.begin_ns = std::max(time_ns, before.after(now.sent_ns - before.sent_ns));
     now.end_ns = now.begin_ns;
-    now.reach_ns = before.reach_ns;
-    if (step_ns > 0) now.reach_ns = std::clamp(2 * step_ns, before.reach_ns / 2, kLongestStepNs);
-    now.latest_ns = std::max(before.latest_ns, time_ns + now.reach_ns + kLateNs);
+    now.latest_ns =
+        std::max(before.latest_ns, time_ns + std::min(2 * step_ns, kLongestStepNs) + kLateNs);
     if (step_ns <= kLongestStepNs) {
       now.end_ns = std::max(now.begin_ns, time_ns + step_ns);
       now.step_ns = step_ns;

@@ -46,9 +46,9 @@ class SimulatedTime {
   [[nodiscard]] std::uint64_t resets() const noexcept;
   // The time of the last message; 0 before the first.
   [[nodiscard]] std::int64_t clock_ns() const noexcept;
-  // The latest time to which a stamp can lead: two steps and kLateNs after the last message. The
-  // largest of the steps counts, and half as much at each message after it. Instead of the two
-  // steps, kLongestStepNs counts at most, and while none is known.
+  // The latest time to which a stamp can lead: kLateNs and twice the last step after the last
+  // message, and never less than before. Twice a step counts as kLongestStepNs at most, and while
+  // none is known.
   [[nodiscard]] std::int64_t latest_ns() const noexcept { return last().latest_ns; }
   // The present time; 0 before the first message.
   [[nodiscard]] std::int64_t now_ns(std::int64_t monotonic_ns) const noexcept;
@@ -74,7 +74,7 @@ class SimulatedTime {
     // former is `clock_ns`, unless the time had gone on farther by then.
     std::int64_t begin_ns = 0, end_ns = 0;
     std::int64_t step_ns = 0, interval_ns = 1;  // simulated and true time between the last two
-    std::int64_t latest_ns = 0, reach_ns = kLongestStepNs;  // see latest_ns()
+    std::int64_t latest_ns = 0;                 // see latest_ns()
     std::uint64_t resets = 0;
 
     [[nodiscard]] std::int64_t after(std::int64_t passed_ns) const noexcept;

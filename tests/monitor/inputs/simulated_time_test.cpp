@@ -230,7 +230,8 @@ TEST(SimulatedTime, IsNotLedByAStampAheadByMoreThanTwoSteps) {
     EXPECT_EQ(of.time.now_ns(of.now()), now) << ahead;
   }
   of.time.lead(of.clock() + kMost);
-  EXPECT_EQ(of.time.now_ns(of.now()), of.clock() + kMost);
+  of.time.lead(of.clock() + kMost + 1);
+  EXPECT_EQ(of.time.now_ns(of.now()), of.clock() + kMost) << "it does not undo what has led";
   EXPECT_EQ(of.time.latest_ns(), of.clock() + kMost);
 }
 
@@ -241,6 +242,15 @@ TEST(SimulatedTime, IsLedByAStampAfterAPause) {
   for (int i = 0; i < 100; ++i) of.say(of.clock());
   of.time.lead(of.clock() + 10 * kMillisecond);
   EXPECT_EQ(of.time.now_ns(of.now()), of.clock() + 10 * kMillisecond);
+}
+
+// Steps vary.
+TEST(SimulatedTime, IsLedByAStampAfterAStepThatWasShorterThanThoseBefore) {
+  Simulation of(1.0, 20 * kMillisecond);
+  of.play(6 * kSecond);
+  of.say(of.clock() + 5 * kMillisecond);
+  of.time.lead(of.clock() + 20 * kMillisecond);
+  EXPECT_EQ(of.time.now_ns(of.now()), of.clock() + 20 * kMillisecond);
 }
 
 // At the first message, and after a jump or a new begin, no step is known.
