@@ -124,6 +124,11 @@ void ShareScenes::hear() {
                                     .revision = heard.last->scene_revision,
                                     .has_changed = heard.last->in_force_from != 0});
     }
+    const client::RefusedMessages& refused = heard.reader.refused();
+    if (refused.count < heard.next_told) continue;
+    heard.next_told = 2 * refused.count;
+    log_line(lines::kShareSceneRefused, names_[heard.share], taken_->scene_revision,
+             client::text_of({refused}));
   }
 }
 

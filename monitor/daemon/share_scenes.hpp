@@ -97,6 +97,7 @@ class ShareScenes {
     std::size_t share;
     client::CheckedReader reader;
     Sample<clearance_msg_Catalogue> last = {};
+    std::uint64_t next_told = 1;  // the number of refused messages at which the log says so again
   };
   struct Wanted {
     std::size_t share = 0;

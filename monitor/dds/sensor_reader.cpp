@@ -161,8 +161,7 @@ void SensorReader::poll() {
 }
 
 std::int64_t SensorReader::time_ns() const noexcept {
-  SystemClock clock;
-  return time_ == nullptr ? clock.realtime_ns() : time_->now_ns(clock.monotonic_ns());
+  return time_ == nullptr ? SystemClock().realtime_ns() : time_->latest_ns();
 }
 
 // Stamps of a simulation that began anew are those of another motion.
@@ -208,6 +207,7 @@ bool SensorReader::is_used(const SeenCloud* cloud) const noexcept {
 
 void SensorReader::use(std::uint32_t sensor, SensorFrame frame) {
   frame.content = std::exchange(content_, 0);
+  if (time_ != nullptr) time_->lead(frame.stamp_ns);
   frames_.put(sensor, frame, cell_->scene.revision);
   // A follower and its leader may build the same frames in another order.
   Last& last = last_[sensor];

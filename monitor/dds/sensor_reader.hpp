@@ -87,7 +87,7 @@ class SensorReader {
 
   const Cell* cell_;
   Participant& participant_;
-  const SimulatedTime* time_;
+  SimulatedTime* time_;
   std::uint64_t resets_ = 0;  // of that time
   FrameExchange frames_;
   BuiltFrames built_;

@@ -23,6 +23,12 @@ std::int64_t SimulatedTime::Segment::after(std::int64_t passed_ns) const noexcep
   return std::min(begin_ns + step, end_ns);
 }
 
+std::int64_t SimulatedTime::Segment::present(std::int64_t monotonic_ns,
+                                             std::int64_t led_ns) const noexcept {
+  const std::int64_t time_ns = after(elapsed(came_ns, monotonic_ns));
+  return led_ns <= latest_ns ? std::max(time_ns, led_ns) : time_ns;
+}
+
 std::optional<SimulatedTime::Segment> SimulatedTime::segment(std::uint64_t number) const noexcept {
   std::array<std::int64_t, kWords> words;
   const auto& kept = kept_[number % kKept];
@@ -49,6 +55,7 @@ SimulatedTime::Change SimulatedTime::note(std::int64_t time_ns, std::int64_t sen
               .clock_ns = time_ns,
               .begin_ns = time_ns,
               .end_ns = time_ns,
+              .latest_ns = time_ns + kLongestStepNs + kLateNs,
               .resets = before.resets};
   const bool is_back = !is_first && time_ns < before.clock_ns;
   if (is_back) ++now.resets;
@@ -56,6 +63,8 @@ SimulatedTime::Change SimulatedTime::note(std::int64_t time_ns, std::int64_t sen
     const std::int64_t step_ns = elapsed(before.clock_ns, time_ns);
     now.begin_ns = std::max(time_ns, before.after(now.sent_ns - before.sent_ns));
     now.end_ns = now.begin_ns;
+    now.latest_ns =
+        std::max(before.latest_ns, time_ns + std::min(2 * step_ns, kLongestStepNs) + kLateNs);
     if (step_ns <= kLongestStepNs) {
       now.end_ns = std::max(now.begin_ns, time_ns + step_ns);
       now.step_ns = step_ns;
@@ -70,6 +79,15 @@ SimulatedTime::Change SimulatedTime::note(std::int64_t time_ns, std::int64_t sen
   return is_back ? Change::kBack : Change::kGoesOn;
 }
 
+void SimulatedTime::lead(std::int64_t stamp_ns) noexcept {
+  for (std::int64_t led_ns = led_ns_.load(); led_ns != stamp_ns;) {
+    const std::int64_t latest_ns = this->latest_ns();
+    const bool is_passed = led_ns >= stamp_ns && led_ns <= latest_ns;
+    if (stamp_ns > latest_ns || is_passed || led_ns_.compare_exchange_weak(led_ns, stamp_ns))
+      return;
+  }
+}
+
 bool SimulatedTime::is_silent(std::int64_t monotonic_ns) const noexcept {
   return is_known() && elapsed(last().came_ns, monotonic_ns) > kSilentNs;
 }
@@ -79,8 +97,8 @@ std::uint64_t SimulatedTime::resets() const noexcept { return last().resets; }
 std::int64_t SimulatedTime::clock_ns() const noexcept { return last().clock_ns; }
 
 std::int64_t SimulatedTime::now_ns(std::int64_t monotonic_ns) const noexcept {
-  const Segment now = last();
-  return now.after(elapsed(now.came_ns, monotonic_ns));
+  const std::int64_t led_ns = led_ns_.load();
+  return last().present(monotonic_ns, led_ns);
 }
 
 std::int64_t SimulatedTime::passes_in(std::int64_t true_ns) const noexcept {
@@ -110,8 +128,9 @@ std::int64_t SimulatedTime::at(std::int64_t sent_ns) const noexcept {
 }
 
 TickTime SimulatedTime::tick_time(std::int64_t monotonic_ns) noexcept {
+  const std::int64_t led_ns = led_ns_.load();
   const Segment now = last();
-  const std::int64_t time_ns = now.after(elapsed(now.came_ns, monotonic_ns));
+  const std::int64_t time_ns = now.present(monotonic_ns, led_ns);
   const bool is_silent_now = is_silent(monotonic_ns);
   if (std::exchange(told_resets_, now.resets) != now.resets) {
     told_ns_ = std::max<std::int64_t>(std::min(time_ns, told_ns_ - 1), 0);

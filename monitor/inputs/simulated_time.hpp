@@ -1,8 +1,12 @@
 // The time of a simulation, from the messages of its clock (/clock of ROS 2).
 //
 // A message states the simulated time at which it was sent. Until the next one comes, the time goes
-// on as between the last two, by at most the step between them. So it is never ahead of the clock
-// by more than one step. A message with the same time again is a pause, in which nothing ages.
+// on as between the last two, by at most the step between them. A message with the same time again
+// is a pause, in which nothing ages.
+//
+// Joints, poses and frames often come before the message of their time. A stamp that is ahead of
+// the clock by no more than two steps and kLateNs leads the time: the simulation has got there.
+// One of the steps is that by which recorders with the time of a clock are late.
 //
 // A clock that goes back has begun anew. One that is silent for kSilentNs may be paused, or dead.
 // Both mean that an unknown time has passed (TickTime), and inputs count when they come again.
@@ -24,11 +28,16 @@ class SimulatedTime {
   static constexpr std::int64_t kSilentNs = 1'000'000'000;
   // A larger step is a jump: the time stands still from then until the next message.
   static constexpr std::int64_t kLongestStepNs = 250'000'000;
+  // A message of the clock may come so much later than what was sent after it, simulated ns.
+  static constexpr std::int64_t kLateNs = 5'000'000;
 
   enum class Change : std::uint8_t { kGoesOn, kFirst, kBack };
   // A message of the clock: its time, its time of sending (CLOCK_REALTIME of the sender), and when
   // it came (CLOCK_MONOTONIC).
   Change note(std::int64_t time_ns, std::int64_t sent_ns, std::int64_t came_ns) noexcept;
+  // An input with this stamp has come: to be told before a tick can use it. A stamp after
+  // latest_ns() changes nothing.
+  void lead(std::int64_t stamp_ns) noexcept;
 
   // False before the first message.
   [[nodiscard]] bool is_known() const noexcept { return count_.load() > 0; }
@@ -37,6 +46,10 @@ class SimulatedTime {
   [[nodiscard]] std::uint64_t resets() const noexcept;
   // The time of the last message; 0 before the first.
   [[nodiscard]] std::int64_t clock_ns() const noexcept;
+  // The latest time to which a stamp can lead: kLateNs and twice the last step after the last
+  // message, and never less than before. Twice a step counts as kLongestStepNs at most, and while
+  // none is known.
+  [[nodiscard]] std::int64_t latest_ns() const noexcept { return last().latest_ns; }
   // The present time; 0 before the first message.
   [[nodiscard]] std::int64_t now_ns(std::int64_t monotonic_ns) const noexcept;
   // The simulated time at which something was sent. `sent_ns` is CLOCK_REALTIME of the clock's
@@ -61,9 +74,14 @@ class SimulatedTime {
     // former is `clock_ns`, unless the time had gone on farther by then.
     std::int64_t begin_ns = 0, end_ns = 0;
     std::int64_t step_ns = 0, interval_ns = 1;  // simulated and true time between the last two
+    std::int64_t latest_ns = 0;                 // see latest_ns()
     std::uint64_t resets = 0;
 
     [[nodiscard]] std::int64_t after(std::int64_t passed_ns) const noexcept;
+    // `led_ns` was read before this message: then no stamp that led is after its latest time, but
+    // for those of another run.
+    [[nodiscard]] std::int64_t present(std::int64_t monotonic_ns,
+                                       std::int64_t led_ns) const noexcept;
   };
   static constexpr std::size_t kKept = 1024;  // 100 ms of a clock of 10 kHz
   static constexpr std::size_t kWords = sizeof(Segment) / sizeof(std::int64_t);
@@ -74,6 +92,7 @@ class SimulatedTime {
 
   std::array<std::array<std::atomic<std::int64_t>, kWords>, kKept> kept_{};
   std::atomic<std::uint64_t> count_{0};
+  std::atomic<std::int64_t> led_ns_{0};  // the latest stamp that has led, maybe in another run
   // Of the tick thread.
   std::int64_t told_ns_ = 0;
   std::uint64_t told_resets_ = 0;

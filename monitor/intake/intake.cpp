@@ -151,6 +151,10 @@ void Intake::give(PoseBatch& batch, std::uint64_t writer, std::size_t cut) {
   if (!is_ours && !is_former && !std::exchange(tally->warned_of_revision, true)) {
     tell(News(lines::kOtherRevision, tally->source.view(), batch.scene_revision, scene_->revision));
   }
+  if (options_.time != nullptr) {
+    for (const PoseSample& sample : batch.samples) options_.time->lead(sample.stamp_ns);
+    for (const JointSample& sample : batch.joints) options_.time->lead(sample.stamp_ns);
+  }
   if (!use_(batch)) {
     ++tally->lost;
     return;

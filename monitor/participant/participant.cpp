@@ -202,6 +202,8 @@ Participant::Participant(const DdsOptions& options, const std::string& ros_node)
   where_ = where_joined(options, domain);
   how_to_reach_ = clearance::how_to_reach(options, domain.id);
   domain_ = open_domain(options, domain.id);
+  if (domain_->number != domain.id)
+    where_ += ", beside another library of this process that has configured this domain";
   participant_ = check_dds(dds_create_participant(domain_->number, nullptr, nullptr),
                            fmt::format("joining {}", where_));
   make_publisher_and_subscriber(options.partition);

@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "config/cell/share_topics.hpp"
 #include "monitor/client/commands.hpp"
 #include "monitor/client/shared_cell.hpp"
 #include "monitor/wire/moveit_types.hpp"
@@ -312,6 +313,23 @@ TEST_F(MoveItSharesOnMachines, AreNotWholeUntilTheOneThatLacksAMeshHasIt) {
       folder / "boxes" / "clearance.sent", folder / "robot" / "clearance.sent",
       std::filesystem::copy_options::recursive | std::filesystem::copy_options::overwrite_existing);
   EXPECT_TRUE(are_whole_with({"wedge"})) << whole.what_is_missing() << logs();
+}
+
+TEST_F(MoveItSharedCells, SayThatACatalogueOfTheFirstShareIsCorrupt) {
+  start_whole();
+  const dds_entity_t writer =
+      sender.writer(TopicKind::kCatalogue, share_topic(cell.topics.catalogue, "boxes"));
+  Sample<clearance_msg_Catalogue> corrupt;
+  corrupt->daemon = 1;
+  for (char** text : {&corrupt->scene, &corrupt->cell_yaml, &corrupt->cell_hash, &corrupt->build})
+    *text = dds_string_dup("");
+  EXPECT_TRUE(read_until(whole, [&] {
+    EXPECT_EQ(dds_write(writer, &*corrupt), DDS_RETCODE_OK);
+    return daemons["left floor"]->told("share-scene-refused", {"'boxes'", "as corrupt"}) &&
+           daemons["robot"]->told("share-scene-refused", {"'boxes'", "as corrupt"});
+  })) << logs();
+  EXPECT_FALSE(daemons["boxes"]->told("share-scene-refused"));
+  EXPECT_TRUE(read_until(whole, [&] { return whole.is_whole(); })) << logs();
 }
 
 }  // namespace

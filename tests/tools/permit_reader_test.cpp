@@ -12,8 +12,12 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <variant>
 #include <vector>
 
+#include "config/cell/cell_file.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
+#include "tests/shared/scratch_folder.hpp"
 #include "tests/tools/running_cell.hpp"
 
 namespace clearance_control {
@@ -144,6 +148,41 @@ TEST_F(PermitReaderTest, HoldsIfAScalingIsMissing) {
   ASSERT_TRUE(comes(1.0, [](const Permit& permit) { return permit.scaling == 1.0; }));
   EXPECT_FALSE(is_relied_on(reader->newest()));
   EXPECT_TRUE(has_told("no report may be relied on: nothing heard"));
+}
+
+// The scaling would be that of another robot.
+TEST(PermitsOfStops, HoldIfTheCellLacksAJointOfTheRobot) {
+  const test::ScratchFolder folder;
+  test::write_text(folder / "scara.urdf", test::kScaraUrdf);
+  test::write_text(folder / "cell.yaml",
+                   "name: stops\nunits: {length: m, angle: rad}\nrate_hz: 100\n"
+                   "defaults: {age_limit_ms: 10000}\n"
+                   "robots: [{name: arm, urdf: scara.urdf, joints: {elbow: {max_speed: 2}}, "
+                   "stopping: {reaction_ms: 40, time_ms: 200}}]\nobjects:\n"
+                   "  - {name: pin, fixed: true, sphere: {radius: 0.1}, pose: {xyz: [9, 0, 0]}}\n"
+                   "pairs: [{between: [arm, pin], publish: true}]\n"
+                   "zones: [{name: stands, between: [arm, pin], stops: {margin: 0.05}}]\n");
+  const std::string file = (folder / "cell.yaml").string();
+  const auto cell = std::get<clearance::Cell>(clearance::read_cell(file));
+  const clearance::DdsOptions dds = test::own_dds();
+  test::ChildProcess daemon(test::kDaemon, test::with({file}, test::dds_arguments(dds)));
+  client::Connection connection(dds, cell.topics);
+  client::JointWriter joints(connection, "driver",
+                             std::vector<std::string>{"shoulder", "elbow", "push"});
+  PermitOptions options{.obeys_scaling = true};
+  options.stream.period = std::chrono::milliseconds(400);
+  const auto comes = [&](const std::vector<std::string>& names, double scaling, Cause cause) {
+    options.joints = names;
+    PermitReader reader(dds, options, [](const std::string&) {});
+    return test::eventually([&] {
+      joints.write(std::vector{0.1, 0.2, 0.1}, std::vector{0.0, 0.0, 0.0});
+      const Permit& permit = reader.newest();
+      return permit.error(client::monotonic_ns()) == ReportError::kGood &&
+             permit.scaling == scaling && permit.of_present == 1.0 && permit.cause == cause;
+    });
+  };
+  EXPECT_TRUE(comes({"push", "shoulder"}, 1.0, Cause::kNone)) << daemon.output();
+  EXPECT_TRUE(comes({"shoulder", "wrist"}, 0.0, Cause::kUnknown)) << daemon.output();
 }
 
 TEST_F(PermitReaderTest, HoldsAfterTheDaemonIsKilledAndUntilAnotherOneIsHeard) {

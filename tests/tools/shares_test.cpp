@@ -217,6 +217,8 @@ TEST_F(SharedCells, AreOneDaemonToOrdinaryReadersBehindClearanceMerge) {
   EXPECT_TRUE(hears([&] { return boxes.in(*reports)->status != kUnknown; })) << merge.output();
   merge.signal(SIGTERM);
   EXPECT_EQ(merge.wait(), 0) << merge.output();
+  EXPECT_FALSE(merge.wrote(" 0 zones active without a share")) << merge.output();
+  EXPECT_TRUE(merge.wrote(", 0 zones wrong")) << merge.output();
 }
 
 // A report may come before the catalogue of its scene.
@@ -300,7 +302,7 @@ TEST(Several, LosesNoCycleAndHasNoZoneWrong) {
     const std::size_t end = text.find(words), begin = text.find_last_of(" \n", end - 1) + 1;
     return end == std::string::npos ? -1 : std::stoi(text.substr(begin, end - begin));
   };
-  const int lost = number_before(" cycles lost, 0 zones wrong");
+  const int lost = number_before(" cycles lost, 0 zones active without a share, 0 zones wrong");
   const int late = number_before(" late or skipped ticks");
   EXPECT_TRUE(lost >= 0 && lost <= late) << text;
   EXPECT_EQ(status, lost == 0 ? 0 : 1) << text;

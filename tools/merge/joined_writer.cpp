@@ -153,10 +153,11 @@ std::string JoinedWriter::summary(const client::SharedCell& whole) const {
   return fmt::format(
       "{} reports of the whole cell, {} of them with a share missing, late, of another revision or "
       "divided otherwise; "
-      "{} cycles lost, {} zones wrong, {} reports not taken by DDS\n"
+      "{} cycles lost, {} zones active without a share, {} zones wrong, {} reports not taken by "
+      "DDS\n"
       "from the oldest pose in use to the oldest share's report: {}; to that of the whole: {}\n"
       "delay from the oldest share's report to that of the whole: {}",
-      reports_, not_whole_, whole.missed(), zone_check_.wrong(), failed_,
+      reports_, not_whole_, whole.missed(), zone_check_.unheard(), zone_check_.wrong(), failed_,
       percentiles(delays_us_.published), percentiles(delays_us_.joined),
       percentiles(delays_us_.merging));
 }

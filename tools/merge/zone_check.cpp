@@ -19,7 +19,7 @@ void ZoneCheck::check(const client::SharedCell& whole) {
     const Zone& zone = scene.zones[id];
     const bool is_unheard =
         state.active && state.cause == static_cast<std::uint8_t>(ZoneCause::kNoShare);
-    if (is_unheard && !was_unheard_[id]) ++wrong_;
+    if (is_unheard && !was_unheard_[id]) ++unheard_;
     was_unheard_[id] = is_unheard;
     const bool is_inside = std::ranges::any_of(zone.pairs, [&](std::uint32_t pair) {
       const auto at = std::ranges::lower_bound(pairs, pair, {}, &clearance_msg_PairDistance::pair);

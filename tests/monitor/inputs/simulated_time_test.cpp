@@ -95,6 +95,32 @@ TEST_P(SimulatedTimes, OfMessagesAreThoseAtWhichTheyWereSent) {
   }
 }
 
+// Messages of the clock are late by a step, as behind joints that a player hands over first. No
+// joint is of the future, and the time is not ahead of the simulation.
+TEST_P(SimulatedTimes, ReachTheStampsThatComeBeforeTheMessageOfTheirTime) {
+  constexpr std::int64_t kBegin = 100 * kSecond;
+  for (const std::int64_t step : {4 * kMillisecond, 20 * kMillisecond, 100 * kMillisecond}) {
+    const auto true_ns = [](std::int64_t simulated_ns) {
+      return std::llround(static_cast<double>(simulated_ns) / GetParam());
+    };
+    SimulatedTime time;
+    std::int64_t clock = 0;
+    int of_the_future = 0;
+    for (std::int64_t truth = 0; truth < 60 * step; truth += step / 16) {
+      for (; clock + step <= truth; clock += step)
+        time.note(kBegin + clock, kAhead + true_ns(clock), kSecond + true_ns(clock + step));
+      if (clock == 0) continue;
+      const std::int64_t now = kSecond + true_ns(truth);
+      of_the_future += time.now_ns(now) < kBegin + truth;
+      time.lead(kBegin + truth);
+      const std::int64_t told = time.tick_time(now).now_ns;
+      ASSERT_GE(told, kBegin + truth);
+      ASSERT_LE(told, kBegin + truth + 1000) << "1 ns a tick";
+    }
+    EXPECT_GT(of_the_future, 900) << "it would have been, unless it led";
+  }
+}
+
 // A report that takes 8 ms is 80 simulated ms old at ten times the speed.
 TEST_P(SimulatedTimes, PassInTrueTimeByTheirSpeed) {
   Simulation simulation(GetParam(), 10 * kMillisecond);
@@ -193,12 +219,72 @@ TEST(SimulatedTime, OfAMessageFromBeforeTheFirstOneIsOlderThanIt) {
   EXPECT_EQ(SimulatedTime().at(kAhead), 0);
 }
 
+// Such a source has another clock, which says nothing of the time.
+TEST(SimulatedTime, IsNotLedByAStampAheadByMoreThanTwoSteps) {
+  constexpr std::int64_t kStep = 10 * kMillisecond, kMost = 2 * kStep + SimulatedTime::kLateNs;
+  Simulation of(1.0, kStep);
+  of.play(6 * kSecond);
+  const std::int64_t now = of.time.now_ns(of.now());
+  for (const std::int64_t ahead : {kMost + 1, kSecond, 3600 * kSecond}) {
+    of.time.lead(of.clock() + ahead);
+    EXPECT_EQ(of.time.now_ns(of.now()), now) << ahead;
+  }
+  of.time.lead(of.clock() + kMost);
+  of.time.lead(of.clock() + kMost + 1);
+  EXPECT_EQ(of.time.now_ns(of.now()), of.clock() + kMost) << "it does not undo what has led";
+  EXPECT_EQ(of.time.latest_ns(), of.clock() + kMost);
+}
+
+// After a pause, joints come before the first message of a later time.
+TEST(SimulatedTime, IsLedByAStampAfterAPause) {
+  Simulation of(1.0, 10 * kMillisecond);
+  of.play(6 * kSecond);
+  for (int i = 0; i < 100; ++i) of.say(of.clock());
+  of.time.lead(of.clock() + 10 * kMillisecond);
+  EXPECT_EQ(of.time.now_ns(of.now()), of.clock() + 10 * kMillisecond);
+}
+
+// Steps vary.
+TEST(SimulatedTime, IsLedByAStampAfterAStepThatWasShorterThanThoseBefore) {
+  Simulation of(1.0, 20 * kMillisecond);
+  of.play(6 * kSecond);
+  of.say(of.clock() + 5 * kMillisecond);
+  of.time.lead(of.clock() + 20 * kMillisecond);
+  EXPECT_EQ(of.time.now_ns(of.now()), of.clock() + 20 * kMillisecond);
+}
+
+// At the first message, and after a jump or a new begin, no step is known.
+TEST(SimulatedTime, IsLedByAStampBeforeAStepIsKnown) {
+  Simulation of(1.0, 10 * kMillisecond);
+  for (const std::int64_t begin : {100 * kSecond, 200 * kSecond, 10 * kSecond}) {
+    of.say(begin);
+    of.time.lead(begin + SimulatedTime::kLongestStepNs + SimulatedTime::kLateNs + 1);
+    EXPECT_EQ(of.time.now_ns(of.now()), begin);
+    of.time.lead(begin + 20 * kMillisecond);
+    EXPECT_EQ(of.time.now_ns(of.now()), begin + 20 * kMillisecond);
+    of.play(of.now() + kSecond);
+  }
+}
+
+TEST(SimulatedTime, IsNotLedByTheStampsOfAnotherRun) {
+  Simulation of(1.0, 10 * kMillisecond);
+  of.play(6 * kSecond);
+  of.time.lead(of.clock() + 11 * kMillisecond);
+  EXPECT_EQ(of.time.tick_time(of.now()).now_ns, of.clock() + 11 * kMillisecond);
+  of.say(2 * kSecond);
+  EXPECT_EQ(of.time.now_ns(of.now()), 2 * kSecond);
+  of.time.lead(2 * kSecond + 3 * kMillisecond);
+  EXPECT_EQ(of.time.now_ns(of.now()), 2 * kSecond + 3 * kMillisecond);
+  EXPECT_EQ(of.time.tick_time(of.now()).now_ns, 2 * kSecond + 3 * kMillisecond);
+}
+
 // The sender's clock is stepped, delays vary, the factor changes from message to message.
-TEST(SimulatedTime, NeverGoesBackOrFartherAheadThanAStepWhateverComes) {
+TEST(SimulatedTime, NeverGoesBackOrFartherAheadThanTwoStepsWhateverComes) {
+  constexpr std::int64_t kFirst = SimulatedTime::kLongestStepNs;
   Random random(7);
   for (int run = 0; run < 50; ++run) {
     SimulatedTime time;
-    std::int64_t now = kSecond, clock = 10 * kSecond, longest = 0, before = -1;
+    std::int64_t now = kSecond, clock = 10 * kSecond, longest = 0, before = -1, first = 0;
     for (int i = 0; i < 2000; ++i) {
       now += random.integer(1, 3) * kMillisecond;
       if (random.chance(0.7)) {
@@ -208,9 +294,11 @@ TEST(SimulatedTime, NeverGoesBackOrFartherAheadThanAStepWhateverComes) {
                                   (random.chance(0.01) ? -3600 * kSecond : 0);
         time.note(clock += step, sent, now);
       }
+      if (random.chance(0.5)) time.lead(clock + random.integer(-40, 80) * kMillisecond / 4);
       const std::int64_t told = time.tick_time(now).now_ns;
       ASSERT_GT(told, before);
-      ASSERT_LE(told, clock + longest + i);
+      if (first == 0 && time.is_known()) first = clock;
+      ASSERT_LE(told, std::max(clock + 2 * longest, first + kFirst) + SimulatedTime::kLateNs + i);
       if (time.is_known()) {
         ASSERT_GE(told, clock);
       }

@@ -156,6 +156,7 @@ TEST(Participant, JoinsADomainThatAnotherLibraryOfTheProcessHasConfigured) {
     Participant theirs(check_dds(dds_create_participant(*dds.domain, nullptr, nullptr), "joining"),
                        dds.partition);
     Participant ours(dds), second(dds);
+    EXPECT_THAT(second.where(), HasSubstr("beside another library of this process"));
     const dds_entity_t writer = ours.writer(TopicKind::kPoses, "poses");
     theirs.reader(TopicKind::kPoses, "poses");
     second.reader(TopicKind::kPoses, "poses");

@@ -78,7 +78,8 @@ void ClearanceLimiter::read_parameters() {
                         .slow_from = get("slow_from").as_double(),
                         .pairs = get("pairs").as_string_array(),
                         .zones = get("zones").as_string_array(),
-                        .obeys_scaling = get("obey_scaling").as_bool()};
+                        .obeys_scaling = get("obey_scaling").as_bool(),
+                        .joints = joints_};
   const double count_for_s = get("reports_count_for").as_double();
   if (!(count_for_s >= 0.0 && count_for_s <= 1.0))
     throw std::invalid_argument("reports_count_for has to be a time from 0 to 1 s");

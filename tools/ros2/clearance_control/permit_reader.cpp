@@ -141,9 +141,21 @@ void PermitReader::limit_by_distances(Permit& permit) {
   }
 }
 
+const clearance_msg_Catalogue* PermitReader::names_of(std::uint64_t revision) {
+  if (names_.message(revision) == nullptr) names_.update();
+  return names_.message(revision);
+}
+
+bool PermitReader::has_joints(std::uint64_t revision) {
+  const clearance_msg_Catalogue* const names = names_of(revision);
+  return names != nullptr && std::ranges::all_of(options_.joints, [&](const std::string& joint) {
+           return std::ranges::any_of(list(names->joints),
+                                      [&](const auto& of_cell) { return joint == of_cell.name; });
+         });
+}
+
 void PermitReader::limit_by_zones(Permit& permit) {
-  if (names_.message(reports_->scene_revision) == nullptr) names_.update();
-  const clearance_msg_Catalogue* const names = names_.message(reports_->scene_revision);
+  const clearance_msg_Catalogue* const names = names_of(reports_->scene_revision);
   for (const std::string& zone : options_.zones) {
     const clearance_msg_CatalogueZone* found = nullptr;
     if (names != nullptr) {
@@ -158,7 +170,7 @@ void PermitReader::limit_by_zones(Permit& permit) {
 }
 
 // A cell without separation and stops sends none of these messages, so nothing is relied on.
-void PermitReader::limit_by_scaling(Permit& permit) const {
+void PermitReader::limit_by_scaling(Permit& permit) {
   const clearance_msg_Separation& message = **separation_;
   const auto obey = [&](std::uint8_t validity, double scaling) {
     const bool is_known = validity > 0 && validity <= kLastValidity && scaling >= 0.0;
@@ -167,6 +179,8 @@ void PermitReader::limit_by_scaling(Permit& permit) const {
   for (const clearance_msg_ZoneSeparation& zone : list(message.zones))
     obey(zone.validity, zone.scaling);
   for (const clearance_msg_RobotStop& stop : list(message.stops)) obey(stop.validity, stop.scaling);
+  if (message.stops._length > 0 && !has_joints(message.scene_revision))
+    reduce(permit, 0.0, Cause::kUnknown);
   const std::int64_t age_ns = std::max<std::int64_t>(0, client::now_ns() - message.publish_ns);
   permit.since_ns = client::monotonic_ns() - age_ns - 2 * message.period_ns;
   if (permit.of_present < 1.0 && permit.cause == Cause::kNone) permit.cause = Cause::kScaling;

@@ -22,7 +22,7 @@ enum class Cause : std::uint8_t {
   kNone = 0,
   kNotRelied = 1,  // fail_safe() of the client library
   kHeld = 2,       // two faulty messages came; ends after acknowledge()
-  kUnknown = 3,    // a figure is unknown, late or not certified, or no pair or zone has that name
+  kUnknown = 3,    // a figure is unknown, late or not certified, or the cell lacks a name
   kDistance = 4,   // below slow_from
   kZone = 5,       // a zone is active
   kScaling = 6,    // the daemon's scaling is below 1
@@ -37,6 +37,8 @@ struct PermitOptions {
   std::vector<std::string> pairs = {};  // "hand - table"; none: all pairs of the cell
   std::vector<std::string> zones = {};  // those that hold while they are active
   bool obeys_scaling = false;           // of zones with `separation` and of stops
+  // The joints of the robot: a cell whose stops are obeyed has to have all of them.
+  std::vector<std::string> joints = {};
   clearance::client::StreamOptions stream = {.depth = 4};
 };
 
@@ -77,7 +79,10 @@ class PermitReader {
   [[nodiscard]] Permit judged();
   void limit_by_distances(Permit& permit);
   void limit_by_zones(Permit& permit);
-  void limit_by_scaling(Permit& permit) const;
+  void limit_by_scaling(Permit& permit);
+  // The names of this revision; null: they have not come.
+  [[nodiscard]] const clearance_msg_Catalogue* names_of(std::uint64_t revision);
+  [[nodiscard]] bool has_joints(std::uint64_t revision);
   void tell_changes(const Permit& permit);
 
   PermitOptions options_;
