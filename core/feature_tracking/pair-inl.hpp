@@ -29,9 +29,9 @@ HWY_INLINE double inverse_square_near_1(Vec4 v) { return 2.0 - dot(v, v); }
 
 // The closest points, set by the transition that ends at kClosest.
 struct Findings {
-  // The witness points: A's in frame A, and B's in frame A and in frame B. g++ does not see that
-  // the last one is set wherever it is read.
-  Vec4 a_A, b_A, b_B{};
+  // The witness points: A's in frame A, and B's in frame A and in frame B. g++ 12 does not see that
+  // the last one is set wherever it is read, and g++ 13 does not see it of the first one.
+  Vec4 a_A{}, b_A, b_B{};
   Vec4 n_A;               // the normal: unit, from A to B, frame A
   double distance = 0.0;  // m: |b_A - a_A|; for penetrating bodies minus the depth
   // m: the distance of the polyhedra that the normal certifies, less error_bound
