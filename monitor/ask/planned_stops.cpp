@@ -106,7 +106,9 @@ void PlannedStops::add_pieces(const Trajectory& trajectory, const Stretch& stret
     same = same && velocities_.back().least == velocities_.back().most;
   }
   const double middle = trajectory.middle(stretch);
-  if ((same && !together_) || stretch.to - stretch.from <= longest || middle <= stretch.from) {
+  // Between two neighbouring numbers, the middle is one of them.
+  const bool has_middle = stretch.from < middle && middle < stretch.to;
+  if ((same && !together_) || stretch.to - stretch.from <= longest || !has_middle) {
     pieces_.push_back({.stretch = stretch});
     return;
   }

@@ -77,7 +77,7 @@ double StoppingJoints::extension(const Inputs& inputs) const noexcept {
   const RobotJoint& joint = of_.joints[of.joint];
   const LinkState& parent = links[joint.parent];
   const LinkState& link = links[of.link];
-  if (!parent.known || !link.known) return kInfinity;
+  if (!link.known) return kInfinity;
   const Pose at = compose(parent.pose, joint.parent_from_joint);
   return (link.pose.position - at.position).cross(at.orientation * joint.axis).norm();
 }
@@ -106,7 +106,7 @@ void StoppingJoints::read(const Inputs& inputs, Joint& joint) noexcept {
     joint.speed = std::max(joint.speed, state.sent_speed);
     joint.velocity = std::copysign(joint.speed, joint.velocity);
   }
-  const bool is_known = state.input.has_value && !state.input.late && !state.input.contradicted;
+  const bool is_known = state.input.has_value && !state.input.late;
   joint.age = is_known ? rounded_up(seconds(state.input.age_ns(inputs.time.now_ns))) : 0.0;
   age_ = std::max(age_, joint.age);
   is_assumed_ = is_assumed_ || joint.any_direction;

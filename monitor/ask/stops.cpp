@@ -224,7 +224,7 @@ void Stops::state_others(const Inputs& inputs, const CloudPairs* clouds, double 
   std::size_t pose = 0, frame = 0;
   for (const std::uint32_t i : tracked_) {
     const TrackedObject& object = inputs.objects[i];
-    const bool is_known = object.input.has_value && !object.absent;
+    const bool is_known = object.input.has_value;
     if (scene_.objects[i].is_seen()) {
       SeenFrame& stated = robot.question.seen[frame++];
       const CloudPairs::Content& content = clouds->content(scene_.objects[i].sensor);

@@ -42,7 +42,7 @@ double lower_last_tick(std::uint32_t pair, const TickView& view) noexcept {
   if (then.a == before_a && then.b == before_b) return lower;
   if (raised_this_tick(pair, view)) return -kInfinity;
   const double displacement = between(then.a, before_a) + between(then.b, before_b);
-  return displacement > 0.0 ? rounded_down(lower - rounded_up(displacement)) : lower;
+  return rounded_down(lower - rounded_up(displacement));
 }
 
 DistanceBounds bounds_now(std::uint32_t part_pair, double displacement,

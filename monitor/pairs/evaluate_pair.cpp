@@ -271,7 +271,6 @@ void settle(std::uint32_t pair, const DistanceResult& found, const Vec3& point_o
 
 void evaluate_pair(std::uint32_t pair, const OpenTick& tick, Budget& budget) noexcept {
   const PairTable& table = tick.pairs;
-  if (budget.left() == 0) return;
   if (table.part_pairs_of(pair) > 1 || is_of_cloud(table.first_part_pair(pair), tick)) {
     evaluate_part_pairs(pair, tick, budget);
     return;

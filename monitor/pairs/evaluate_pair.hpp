@@ -23,7 +23,7 @@ void settle(std::uint32_t pair, const DistanceResult& found, const Vec3& point_o
 // Brings a pair up to date and evaluates it as far as the budget goes. The part pair that may be
 // closest is first, then every other one that may be closer still. A part pair whose carried bounds
 // prove that it is not the closest is not queried: the pair's distance does not depend on it. Both
-// objects are known.
+// objects are known, and the budget has a query left.
 void evaluate_pair(std::uint32_t pair, const OpenTick& tick, Budget& budget) noexcept;
 
 // Returns bounds of a pair's distance at the poses of this tick, as far as queries are needed to

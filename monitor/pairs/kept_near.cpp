@@ -182,7 +182,8 @@ void BuildProof::place(const ObjectPair& pair, const Cell& cell) {
   }
 }
 
-// One near pair of parts is enough. If no pair of them is near in the middle, the pair is not.
+// One near pair of parts is enough. If no pair of them is near in the middle, the pair is not. A
+// pair of links that no axis moves is near in the middle only if that decides.
 bool BuildProof::holds_in(const ObjectPair& pair, const Cell& cell) {
   if (queries_ > kMostQueries) return false;
   place(pair, cell);
@@ -212,7 +213,7 @@ bool BuildProof::holds_in(const ObjectPair& pair, const Cell& cell) {
       return true;
     }
   }
-  if (!is_near || axes_.empty()) return false;
+  if (!is_near) return false;
   Cell half = cell;
   half[2 * widest + 1] *= 0.5;
   for (const double side : {-1.0, 1.0}) {

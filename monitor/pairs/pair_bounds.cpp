@@ -171,7 +171,7 @@ PairBounds bounds_of_one_part_pair(std::uint32_t pair, const TrackedObject& a,
 double model_error(const PairBounds& bounds, const TrackedObject& a, const TrackedObject& b,
                    const TickView& view) noexcept {
   const ErrorBounds& errors = view.pairs.errors[bounds.part_pair];
-  const bool is_new = is_evaluated(bounds.status) && bounds.evaluated_cycle == view.cycle;
+  const bool is_new = is_evaluated(bounds.status);
   return is_new && a.plain && b.plain ? errors.loss : errors.between.largest;
 }
 

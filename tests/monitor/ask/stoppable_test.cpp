@@ -307,6 +307,10 @@ TEST(StoppableMotions, AreRefusedBesideOtherMotionsThatAreStated) {
   Question question = turning(0.5, 1.0);
   question.moving = {{.object = "ball", .times = {0.0}, .world_from_object = {test::at(9, 0, 0)}}};
   EXPECT_NE(refusal(scene, question).find("no motions in beside or moving"), std::string::npos);
+  question.moving.clear();
+  question.beside = {{.joints = {"elbow"}, .times = {0.0}, .positions = {0.0}, .velocities = {}}};
+  question.held = {{"push", 0.0}};
+  EXPECT_NE(refusal(scene, question).find("no motions in beside or moving"), std::string::npos);
 }
 
 // Two arms whose fingers come towards each other, each as the other's picture in a mirror.

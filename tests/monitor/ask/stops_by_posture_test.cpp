@@ -93,5 +93,32 @@ TEST(StopsByPosture, CountWithTheLowestStepThatAStopDoesNotLeave) {
   EXPECT_GT(left, 20) << "stops that begin within the step and leave it";
 }
 
+// The extension of an arm follows from the places of its links.
+TEST(StopsByPosture, OfAnArmWhosePlaceIsNotKnownCountWithTheHighestStep) {
+  for (const bool is_placed : {true, false}) {
+    Scene scene = test::arms_that_stop(kTable, test::kSomeStops);
+    const auto person = static_cast<std::uint32_t>(
+        std::ranges::find(scene.objects, "person", &Object::name) - scene.objects.begin());
+    scene.robots[0].base.kind = RobotBase::Kind::kObject;
+    scene.robots[0].base.object = person;
+    Monitor monitor(scene);
+    std::vector<JointSample> joints;
+    for (std::uint32_t v = 0; v < scene.variables.size(); ++v) {
+      const bool bends = scene.variables[v].name == "left_joint2";
+      joints.push_back(test::joint(v,
+                                   bends                            ? 0.0
+                                   : scene.variables[v].lower < 0.0 ? 0.0
+                                                                    : 0.01,
+                                   kStart));
+      joints.back().has_velocity = true;
+      joints.back().velocity = scene.variables[v].name == "left_joint1" ? 0.1 : 0.0;
+    }
+    std::vector<PoseSample> poses;
+    if (is_placed) poses.push_back(test::sample(person, {}, kStart));
+    const double time = monitor.tick(poses, joints, kStart).stops[0].time;
+    EXPECT_NEAR(time, kStatedReaction + (is_placed ? kShort : kLong), 1e-6);
+  }
+}
+
 }  // namespace
 }  // namespace clearance

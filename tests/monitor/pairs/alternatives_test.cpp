@@ -4,8 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <utility>
 
 #include "core/distance.hpp"
 #include "monitor/bodies/posed_part.hpp"
@@ -90,6 +92,17 @@ TEST(Tilt, LeavesOutLinesThatNoJointTurns) {
   EXPECT_LE(cell.tilt(), 1e-12);
   EXPECT_NEAR(cell.tilt(std::array{Vec3(Vec3::UnitZ())}), std::sin(0.1), 1e-9);
   EXPECT_EQ(cell.tilt({}), 1.0) << "joints that only slide";
+}
+
+// Joints that turn about the normal alone do not tilt a face. About any axis across it they do.
+TEST(Tilt, OfParallelFacesIsNothingUnlessNoJointTiltsThem) {
+  const Placed beside(cube(), cube(), test::at(2, 0.3, 0.2)),
+      above(cube(), cube(), test::at(0.3, 0.2, 2));
+  for (int axis = 0; axis < 3; ++axis) {
+    const std::array turns{Vec3(Vec3::Unit(axis))};
+    EXPECT_EQ(beside.tilt(turns), axis == 0 ? 1.0 : 0.0) << axis;
+    EXPECT_EQ(above.tilt(turns), axis == 2 ? 1.0 : 0.0) << axis;
+  }
 }
 
 // If both bodies recede from the closest points steeply, a small turn moves these by little.
@@ -207,12 +220,67 @@ TEST_F(Alternatives, OverlappingPairsAreComparedByTheirPartsOnly) {
   EXPECT_TRUE(std::isnan(found.tilt));
 }
 
+TEST_F(Alternatives, OfACurvedBodyAreComparedByTheirPartsOnly) {
+  scene.objects[kCart].parts = {{"can", test::made(cylinder(0.1, 0.4)), {}}};
+  const GradientAlternative found = between(kCart, kFinger, tick({2.5, 0, 0}));
+  EXPECT_EQ(found.status, GradientStatus::kPartsCompared);
+  EXPECT_TRUE(std::isnan(found.tilt));
+}
+
 TEST_F(Alternatives, AreUnknownWhereRatesAre) {
   tick({2.5, 0, 0});
   const GradientAlternative late =
       between(kCart, kFinger, monitor->tick({}, {}, now += 100 * test::kTick));
   EXPECT_EQ(late.status, GradientStatus::kUnknown);
   EXPECT_TRUE(std::isnan(late.farther) && std::isnan(late.tilt));
+}
+
+// The finger is a point between both balls of the cart, or the cart is one between two of the
+// finger: one of the closest points is the same, and the other is not.
+TEST_F(Alternatives, APointBetweenTwoPartsIsClosestToBothOfThem) {
+  scene.objects[kFinger].parts = {test::ball(0.0)};
+  EXPECT_EQ(between(kCart, kFinger, tick({2.5, 0, 0})).status, GradientStatus::kOneOfSeveral);
+  std::swap(scene.objects[kFinger].parts, scene.objects[kCart].parts);
+  monitor.emplace(scene);
+  EXPECT_EQ(between(kCart, kFinger, tick({2.5, 0, 0})).status, GradientStatus::kOneOfSeveral);
+}
+
+// Two blocks of the finger share a face, whose edge is the closest to the cart. A third is 0.3 m
+// behind them.
+TEST_F(Alternatives, PartsThatShareTheClosestPointAreOnePlace) {
+  scene.objects[kCart].parts = {test::ball(0.0)};
+  const Vec3 half(0.1, 0.1, 0.1);
+  scene.objects[kFinger].parts = {test::block(half, test::at(0, 0.1, 0)),
+                                  test::block(half, test::at(0, -0.1, 0))};
+  const GradientAlternative both = between(kCart, kFinger, tick({2.5, 0, 0}));
+  EXPECT_EQ(both.farther, kInfinity);
+  EXPECT_EQ(both.status, GradientStatus::kUnique);
+  for (const std::size_t place : {0, 1, 2}) {
+    Scene with_third = scene;
+    auto& parts = with_third.objects[kFinger].parts;
+    parts.insert(parts.begin() + static_cast<std::ptrdiff_t>(place),
+                 test::block(half, test::at(-0.3, 0, 0)));
+    monitor.emplace(with_third);
+    const GradientAlternative third = between(kCart, kFinger, tick({2.5, 0, 0}));
+    EXPECT_GT(third.farther, 0.0) << place;
+    EXPECT_LE(third.farther, 0.3 + 1e-12) << place;
+    EXPECT_EQ(third.status, GradientStatus::kUnique) << place;
+  }
+}
+
+TEST_F(Alternatives, OfThreePartsTheSecondCountsInWhicheverOrderTheyAre) {
+  const std::array<Vec3, 3> places{Vec3(0, 0, 0), Vec3(0.2, 0, 0), Vec3(0.5, 0, 0)};
+  std::array<std::size_t, 3> order{0, 1, 2};
+  do {
+    auto& parts = scene.objects[kCart].parts;
+    parts.clear();
+    for (const std::size_t i : order) parts.push_back(test::ball(0.1, {.position = places[i]}));
+    monitor.emplace(scene);
+    tick({2.5, 0, 0});
+    const GradientAlternative found = between(kCart, kFinger, tick({2.5, 0, 0}));
+    EXPECT_EQ(found.status, GradientStatus::kUnique);
+    EXPECT_NEAR(found.farther, 0.2, 1e-9);
+  } while (std::ranges::next_permutation(order).found);
 }
 
 }  // namespace

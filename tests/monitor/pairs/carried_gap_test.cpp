@@ -7,6 +7,7 @@
 #include "monitor/bodies/directed_rounding.hpp"
 #include "monitor/pairs/evaluate_pair.hpp"
 #include "tests/monitor/tick/small_cells.hpp"
+#include "tests/shared/every_choice.hpp"
 
 namespace clearance {
 namespace {
@@ -102,6 +103,25 @@ TEST(CarriedGap, AnUnboundedBodyThatTurnsLeavesNothing) {
   turned.orientation = Eigen::AngleAxisd(1e-3, Vec3::UnitX());
   pair.move(0, turned);
   EXPECT_EQ(pair.told(), -kInfinity);
+}
+
+TEST(CarriedGap, IsKeptOnlyIfBothPartsKeepTheDirectionAndThereIsOne) {
+  test::EveryChoice choice;
+  while (choice.next()) {
+    PosedPart a, b;
+    a.keeps_direction = choice.flag();
+    b.keeps_direction = choice.flag();
+    const bool has_normal = choice.flag();
+    const Vec3 normal = has_normal ? Vec3(Vec3::UnitX()) : Vec3(Vec3::Zero());
+    b.sphere_in_world.centre = {3.0, 0.0, 0.0};
+    const double gap = kept_gap(2.0, normal, a, b);
+    if (a.keeps_direction && b.keeps_direction && has_normal) {
+      EXPECT_NEAR(gap, -1.0, 1e-12);
+    } else {
+      EXPECT_EQ(gap, -kInfinity);
+    }
+  }
+  EXPECT_EQ(choice.runs(), 8u);
 }
 
 }  // namespace

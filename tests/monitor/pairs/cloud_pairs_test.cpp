@@ -132,6 +132,31 @@ TEST(CloudPairs, DeepInACloudShareTheWorkOfATickAndBothBoundsHold) {
   EXPECT_GT(wide, queries / 3);
 }
 
+TEST(CloudPairs, WithoutAnImageOrAPoseAreNotKnown) {
+  const Scene scene = arms_and_sensor();
+  std::vector<PosedPart> parts = parts_of(scene);
+  for (PosedPart& part : parts) place_at({}, part);
+  SeenCloud cloud = SeenCloud::of_points(1);
+  const std::vector<MeasuredPoint> points = {{1.0F, 0.0F, 0.0F, 0.1F}};
+  ASSERT_EQ(cloud.points()->build(points, {Vec3::Zero(), 2.0}), CloudBuild::kBuilt);
+  SlabBody body;
+  for (const bool has_image : {false, true}) {
+    for (const bool has_pose : {false, true}) {
+      CloudTracking tracking;
+      PosedPart part = parts.front();
+      if (!has_pose) part.world_from_part.position.x() = std::nan("");
+      const CloudPairs::Content content{has_image ? &cloud : nullptr, 0.0, 2.0};
+      const CloudPairs::Answer found =
+          CloudPairs::query(content, parts.back(), part, body, tracking);
+      const bool is_known = has_image && has_pose;
+      EXPECT_EQ(found.status, is_known ? DistanceStatus::kConverged : DistanceStatus::kBadPose);
+      EXPECT_EQ(std::isfinite(found.bounds.lower), is_known);
+      EXPECT_EQ(std::isfinite(found.bounds.upper), is_known);
+      EXPECT_EQ(found.witness_a.allFinite(), is_known);
+    }
+  }
+}
+
 // A part that touches one element has tight bounds although seven others are deep in the cloud.
 TEST(CloudPairs, LeaveSomeOfTheWorkForEveryPart) {
   Random random(43);

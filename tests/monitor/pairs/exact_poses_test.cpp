@@ -2,7 +2,10 @@
 // for the exact product.
 #include <gtest/gtest.h>
 
+#include <array>
+
 #include "monitor/pairs/evaluate_pair.hpp"
+#include "monitor/tick/monitor.hpp"
 #include "tests/monitor/tick/small_cells.hpp"
 
 namespace clearance {
@@ -27,6 +30,55 @@ TEST(BoundsForExactPoses, AreWidenedByTheErrorOfPlacingOnBothSides) {
   EXPECT_GE(bounds.upper, 5.0 + error);
   EXPECT_NEAR(bounds.lower, 4.0 - error, 1e-14);
   EXPECT_NEAR(bounds.upper, 5.0 + error, 1e-14);
+}
+
+// Two balls on a line, each of which may be 1 cm off. Far from the origin, the places of parts are
+// not exact.
+TEST(BoundsWithStatedErrors, HoldForBallsApartInTouchInContactAndAtOnePlace) {
+  constexpr double kError = 0.01, kBall = 0.25, kGap = 0x1p-33;
+  struct Gaps {
+    double gap, least, most;
+  };
+  const Gaps rows[] = {{0.5, 0.48, 0.52},
+                       {kGap, kGap - 0.02, kGap + 0.02},
+                       {0.0, -0.02, 0.02},
+                       {-0.125, -0.145, -0.105},
+                       {-0.5, -0.5, -0.48}};
+  for (const double from : {0.0, 1e6}) {
+    for (const Gaps& row : rows) {
+      Scene scene = test::cell_of({test::moving("a", {test::ball(kBall, test::at(0.5, 0, 0))}),
+                                   test::moving("b", {test::ball(kBall)})});
+      for (Object& object : scene.objects) object.place_error.translation = kError;
+      scene.pairs[0].publish = true;
+      Monitor monitor(scene);
+      const Vec3 a(from - 0.5, 0, 0), b(from + 2.0 * kBall + row.gap, 0, 0);
+      for (std::int64_t now = test::kStart; now < test::kStart + 3 * test::kTick;
+           now += test::kTick) {
+        const std::array samples{test::sample(0, {.position = a}, now),
+                                 test::sample(1, {.position = b}, now)};
+        const PairReport& pair = monitor.tick(samples, now).pairs[0];
+        EXPECT_LE(pair.lower, row.least) << row.gap;
+        EXPECT_GE(pair.upper, row.most) << row.gap;
+        EXPECT_GE(pair.lower, row.gap - 2.0 * kError - 1e-8) << row.gap;
+        EXPECT_LE(pair.upper, row.gap + 2.0 * kError + 1e-3) << row.gap;
+        EXPECT_LE(pair.swept_lower, pair.lower);
+        EXPECT_NEAR(pair.model_error, 2.0 * kError, 1e-9);
+      }
+    }
+  }
+}
+
+// Two floors that face each other never come apart, however they are shifted.
+TEST(BoundsWithStatedErrors, OfHalfSpacesThatNothingSeparatesAreMinusInfinity) {
+  Scene scene =
+      test::cell_of({test::moving("a", {test::floor()}), test::moving("b", {test::floor()})});
+  scene.objects[0].place_error.translation = 0.01;
+  scene.pairs[0].publish = true;
+  Monitor monitor(scene);
+  for (std::int64_t now = test::kStart; now < test::kStart + 3 * test::kTick; now += test::kTick) {
+    const std::array samples{test::sample(0, {}, now), test::sample(1, {}, now)};
+    EXPECT_EQ(monitor.tick(samples, now).pairs[0].lower, -kInfinity);
+  }
 }
 
 }  // namespace

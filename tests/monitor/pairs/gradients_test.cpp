@@ -141,6 +141,18 @@ TEST(Gradients, AreNotKnownWhereThePairIsLateOrUnknown) {
   EXPECT_TRUE(std::isnan(late.rates[0]) && std::isnan(late.rates[1]) && std::isnan(late.drift));
 }
 
+// A finger without end overlaps the wall in each direction.
+TEST(Gradients, AreNotKnownWhereNoTranslationSeparatesTheTwo) {
+  Scene cell = scara_and_cart();
+  cell.objects[5].parts = {test::floor()};
+  Monitor monitor(cell);
+  const Report& report = monitor.tick({}, joints(0.3, 0.4, 0.1, kStart), kStart);
+  const Row row = row_between(cell, report, "finger", "wall");
+  ASSERT_EQ(row.rates.size(), 3u);
+  for (const double rate : row.rates) EXPECT_TRUE(std::isnan(rate));
+  EXPECT_TRUE(std::isfinite(row_between(cell, report, "lower", "wall").rates[0]));
+}
+
 TEST(Gradients, AreNotComputedUnlessTheSceneAsks) {
   Scene cell = scara_and_cart();
   cell.gradients = false;

@@ -129,7 +129,8 @@ TEST(HullBound, IsQueriedWhereOneObjectHasAHullAndTheOtherOneModel) {
   scene.objects[2].parts = {{"floor", floor, {}}};
   scene.objects[3].parts = {{"floor", floor, {}}, {"a", cube, {}}};
   scene.objects[4].parts = {{"ball", test::made(hard::facet_ball(10)), {}}};
-  scene.pairs = {{0, 1, false}, {0, 2, false}, {0, 3, false}, {1, 2, false}, {1, 4, false}};
+  scene.pairs = {{0, 1, false}, {0, 2, false}, {0, 3, false},
+                 {1, 2, false}, {1, 4, false}, {3, 4, false}};
   const std::vector<PosedPart> parts = parts_of(scene);
   const PairTable table(scene, parts);
   const HullBound hulls(scene, parts);
@@ -138,6 +139,7 @@ TEST(HullBound, IsQueriedWhereOneObjectHasAHullAndTheOtherOneModel) {
   EXPECT_FALSE(hulls.possible(table.entries[2])) << "a floor and a cube have no hull";
   EXPECT_FALSE(hulls.possible(table.entries[3])) << "both are as simple as can be";
   EXPECT_TRUE(hulls.possible(table.entries[4])) << "one row, but of many facets";
+  EXPECT_FALSE(hulls.possible(table.entries[5])) << "whichever object comes first";
 }
 
 // Time passes fast, so that pairs become awake and asleep continually.

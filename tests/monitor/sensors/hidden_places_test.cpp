@@ -8,6 +8,7 @@
 #include <cmath>
 #include <string>
 
+#include "monitor/pairs/hidden_places.hpp"
 #include "tests/monitor/sensors/small_camera.hpp"
 
 namespace clearance::sensors_test {
@@ -254,6 +255,36 @@ TEST_F(HiddenPlacesTest, WhatAPayloadItselfHidesIsNotCountedAsUnseenAndWhatHides
         // The first row has not seen what is beyond 3.91 m. The ball ends at 1.9 m.
         EXPECT_NEAR(ball.unseen, 2.01, 0.001);
       }
+    }
+  }
+}
+
+// What a frame lists of one body says nothing of the others, nor of another sensor.
+TEST_F(HiddenPlacesTest, OfBodiesThatAFrameDoesNotListHaveNoShell) {
+  make(kImage + ", own_shell: 0.02" + kOverTheArm);
+  for (const bool is_swapped : {false, true}) {
+    Scene scene = cell.scene;
+    if (is_swapped)
+      for (ObjectPair& pair : scene.pairs) std::swap(pair.first, pair.second);
+    HiddenPlaces places(scene);
+    ASSERT_EQ(places.reports().size(), 4u);
+    for (std::uint32_t listed = 0; listed < scene.objects.size(); ++listed) {
+      SeenCloud cloud = SeenCloud::of_points(1);
+      cloud.hidden() = {{.object = listed, .shell = {.elements = 3, .thickness = 0.1}}};
+      places.take(1, cloud);
+      for (const HiddenReport& each : places.reports()) EXPECT_EQ(each.thickness, kInfinity);
+      places.take(0, cloud);
+      for (const HiddenReport& each : places.reports()) {
+        const ObjectPair& pair = scene.pairs[each.pair];
+        const bool is_listed =
+            !scene.objects[listed].is_seen() && (pair.first == listed || pair.second == listed);
+        EXPECT_EQ(each.thickness, is_listed ? 0.1 : 0.0);
+        EXPECT_EQ(each.elements, is_listed ? 3u : 0u);
+      }
+      places.forget(1);
+      EXPECT_LT(places.reports()[0].thickness, kInfinity);
+      places.forget(0);
+      for (const HiddenReport& each : places.reports()) EXPECT_EQ(each.thickness, kInfinity);
     }
   }
 }

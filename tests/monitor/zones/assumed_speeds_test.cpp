@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <vector>
 
+#include "monitor/zones/closing.hpp"
 #include "monitor/zones/separations.hpp"
 #include "tests/monitor/zones/meeting.hpp"
 
@@ -38,6 +39,23 @@ TEST(AssumedSpeeds, OfAPairThatIsNotEvaluatedCountInAllDirections) {
   }
   unknown.robot_turn = {3.0, 0, 0};
   EXPECT_NEAR(unknown.tick(2.0, 0.0, 0.5).robot_speed, 0.5 + 3.0 * kRobotRadius, 1e-12);
+}
+
+// About the direction itself, no point comes nearer by turning. About any other axis, the points of
+// a half-space have no largest speed.
+TEST(AssumedSpeeds, OfABodyWithoutEndThatTurnsAreUnboundedUnlessItTurnsAboutTheDirection) {
+  TrackedObject body;
+  body.bounding_radius = kInfinity;
+  body.twist.linear = {0.5, 0.0, 0.0};
+  for (int axis = 0; axis < 3; ++axis) {
+    body.twist.angular = 2.0 * Vec3(Vec3::Unit(axis));
+    const double speed = speed_towards(body, Vec3::UnitX(), Vec3::Zero(), kInfinity);
+    if (axis == 0) {
+      EXPECT_NEAR(speed, 0.5, 1e-12);
+    } else {
+      EXPECT_EQ(speed, kInfinity);
+    }
+  }
 }
 
 // Both pairs allow any speed, so the one with less to spare stands for the zone.

@@ -181,6 +181,23 @@ TEST_F(Contacts, APoseThatFreezesDuringAnAllowedContactMakesTheZoneActive) {
   }
 }
 
+// After 25 ms without a pose, the part at 1 m/s may have been 25 mm deep, and no pose tells. Where
+// its poses themselves lead through the table, that is too deep.
+TEST_F(Contacts, OfAPartThatWasLateAreUnknownAsFarAsItMayHaveMovedUnseen) {
+  Scene scene = part_on_table();
+  scene.objects[kPart].max_speed = 1.0;
+  for (const bool goes_through : {false, true}) {
+    begin(scene);
+    rest(kTouching - 0.001);
+    for (int i = 0; i < 25; ++i) tick_without_pose();
+    const Report& report = tick(goes_through ? 0.001 - kTouching : kTouching - 0.001);
+    EXPECT_EQ(report.contacts[0].status,
+              goes_through ? ContactStatus::kTooDeep : ContactStatus::kUnknown);
+    EXPECT_TRUE(report.zones[0].active);
+    EXPECT_EQ(report.zones[0].cause, goes_through ? ZoneCause::kContactTooDeep : ZoneCause::kLate);
+  }
+}
+
 TEST_F(Contacts, APoseThatWasNeverHeardMakesTheZoneActive) {
   const Report& report = tick_without_pose();
   EXPECT_EQ(report.contacts[0].status, ContactStatus::kUnknown);

@@ -142,6 +142,26 @@ TEST(LargestSpeed, LeavesEnoughAndNotMuchMore) {
   EXPECT_GT(some, 19'000);
 }
 
+// Where the distance is hardly more than that of a robot that stands, rounding decides.
+TEST(LargestSpeed, LeavesEnoughAtTheDistanceOfARobotThatStands) {
+  Random random(14);
+  int none = 0, some = 0;
+  for (int i = 0; i < 2'000; ++i) {
+    const Separation terms = any_terms(random);
+    const Approach approach = any_approach(random);
+    double distance = protective_distance(terms, approach, 0.0).sum;
+    for (int step = 0; step < 8; ++step) {
+      const double speed = largest_speed(terms, approach, distance);
+      ASSERT_LE(protective_distance(terms, approach, speed).sum, distance);
+      ASSERT_LT(speed, 1e-10);
+      ++(speed > 0.0 ? some : none);
+      distance = std::nextafter(distance, kInfinity);
+    }
+  }
+  EXPECT_GT(none, 100);
+  EXPECT_GT(some, 100);
+}
+
 // A worse term never allows a higher speed.
 TEST(LargestSpeed, NeverGrowsWithATermThatGrows) {
   Random random(13);
