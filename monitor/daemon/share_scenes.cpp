@@ -127,8 +127,7 @@ void ShareScenes::hear() {
     const client::RefusedMessages& refused = heard.reader.refused();
     if (refused.count < heard.next_told) continue;
     heard.next_told = 2 * refused.count;
-    log_line(lines::kShareSceneRefused, names_[heard.share], taken_->scene_revision,
-             client::text_of({refused}));
+    log_line(lines::kShareCatalogueRefused, names_[heard.share], client::text_of({refused}));
   }
 }
 

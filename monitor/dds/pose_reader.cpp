@@ -237,8 +237,10 @@ void PoseReader::take_all(const Now& now) {
     take_into(intake_, reader.topic, reader.handle, now, taken_, &ended_);
   }
   for (const std::uint64_t name : std::exchange(ended_, {})) names_.forget_name(name);
-  for (const RosReaders::Reader& reader : ros_.readers()) {
-    ros_.take(reader, now, taken_);
+  for (const bool of_clock : {true, false}) {
+    for (const RosReaders::Reader& reader : ros_.readers()) {
+      if (intake_.is_clock(reader.topic) == of_clock) ros_.take(reader, now, taken_);
+    }
   }
   intake_.settle(now);
 }

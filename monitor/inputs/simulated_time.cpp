@@ -58,7 +58,10 @@ SimulatedTime::Change SimulatedTime::note(std::int64_t time_ns, std::int64_t sen
               .latest_ns = time_ns + kLongestStepNs + kLateNs,
               .resets = before.resets};
   const bool is_back = !is_first && time_ns < before.clock_ns;
-  if (is_back) ++now.resets;
+  if (is_back) {
+    ++now.resets;
+    now.latest_ns = time_ns + elapsed(before.clock_ns, before.latest_ns);
+  }
   if (!is_first && !is_back) {
     const std::int64_t step_ns = elapsed(before.clock_ns, time_ns);
     now.begin_ns = std::max(time_ns, before.after(now.sent_ns - before.sent_ns));

@@ -5,8 +5,8 @@
 // is a pause, in which nothing ages.
 //
 // Joints, poses and frames often come before the message of their time. A stamp that is ahead of
-// the clock by no more than two steps and kLateNs leads the time: the simulation has got there.
-// One of the steps is that by which recorders with the time of a clock are late.
+// the clock by no more than two steps and kLateNs leads the time. A recorder that takes its time
+// from a clock is late by one step, and a player of its bag by another.
 //
 // A clock that goes back has begun anew. One that is silent for kSilentNs may be paused, or dead.
 // Both mean that an unknown time has passed (TickTime), and inputs count when they come again.
@@ -47,8 +47,9 @@ class SimulatedTime {
   // The time of the last message; 0 before the first.
   [[nodiscard]] std::int64_t clock_ns() const noexcept;
   // The latest time to which a stamp can lead: kLateNs and twice the last step after the last
-  // message, and never less than before. Twice a step counts as kLongestStepNs at most, and while
-  // none is known.
+  // message, and never less than before. Twice a step counts as kLongestStepNs at most, and so it
+  // does while no step is known. A clock that goes back allows stamps that are as far ahead of it
+  // as before.
   [[nodiscard]] std::int64_t latest_ns() const noexcept { return last().latest_ns; }
   // The present time; 0 before the first message.
   [[nodiscard]] std::int64_t now_ns(std::int64_t monotonic_ns) const noexcept;
@@ -78,8 +79,8 @@ class SimulatedTime {
     std::uint64_t resets = 0;
 
     [[nodiscard]] std::int64_t after(std::int64_t passed_ns) const noexcept;
-    // `led_ns` was read before this message: then no stamp that led is after its latest time, but
-    // for those of another run.
+    // Requires that `led_ns` was read before the message was: only stamps of another run are after
+    // the latest time then.
     [[nodiscard]] std::int64_t present(std::int64_t monotonic_ns,
                                        std::int64_t led_ns) const noexcept;
   };

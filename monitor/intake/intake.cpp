@@ -89,13 +89,17 @@ std::vector<NamedTopic> Intake::named() const {
   return named;
 }
 
+bool Intake::is_clock(std::uint32_t topic) const {
+  return routes_[topic].ends.front().wanted.delivery == &kRosClock;
+}
+
 bool Intake::take(const RawMessage& message, const Now& now) {
   monotonic_ns_ = now.monotonic_ns;
   Route& route = routes_[message.topic];
   ++route.counts.messages;
   RawMessage timed = message;
-  const bool is_clock = route.ends.front().wanted.delivery == &kRosClock;
-  if (options_.time != nullptr && !is_clock) timed.sent_ns = options_.time->at(message.sent_ns);
+  if (options_.time != nullptr && !is_clock(message.topic))
+    timed.sent_ns = options_.time->at(message.sent_ns);
   bool decodes = true;
   for (const Route::End& end : route.ends) {
     decodes =

@@ -86,6 +86,8 @@ class Intake final : public Outlet {
     return !scene_->variables.empty() || transforms_->any() || hears_moveit_ || hears_sensors_;
   }
 
+  // True for the topic of a simulation's clock. Take its messages first: others are judged by it.
+  [[nodiscard]] bool is_clock(std::uint32_t topic) const;
   // Returns false if the bytes are not a message of the topic's type.
   bool take(const RawMessage& message, const Now& now);
   // Call this after all available messages, and at the latest after patience_ns().

@@ -394,7 +394,8 @@ inline constexpr LogLine<Text> kPartnerFileNotKept{
 
 inline constexpr LogLine<Text, Count, Text> kShareSceneRefused{
     "share-scene-refused", kError,
-    "the scene of the share '{}', revision {:016x}, is not taken over, so that this share is not "
-    "whole: {}"};
+    "the scene of the share '{}', revision {:016x}, is not here; this share is not whole: {}"};
+inline constexpr LogLine<Text, Text> kShareCatalogueRefused{
+    "share-catalogue-refused", kWarn, "messages with the scene of the share '{}' are not used: {}"};
 
 }  // namespace clearance::lines

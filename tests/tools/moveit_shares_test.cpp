@@ -325,10 +325,10 @@ TEST_F(MoveItSharedCells, SayThatACatalogueOfTheFirstShareIsCorrupt) {
     *text = dds_string_dup("");
   EXPECT_TRUE(read_until(whole, [&] {
     EXPECT_EQ(dds_write(writer, &*corrupt), DDS_RETCODE_OK);
-    return daemons["left floor"]->told("share-scene-refused", {"'boxes'", "as corrupt"}) &&
-           daemons["robot"]->told("share-scene-refused", {"'boxes'", "as corrupt"});
+    return daemons["left floor"]->told("share-catalogue-refused", {"'boxes'", "as corrupt"}) &&
+           daemons["robot"]->told("share-catalogue-refused", {"'boxes'", "as corrupt"});
   })) << logs();
-  EXPECT_FALSE(daemons["boxes"]->told("share-scene-refused"));
+  EXPECT_FALSE(daemons["boxes"]->told("share-catalogue-refused"));
   EXPECT_TRUE(read_until(whole, [&] { return whole.is_whole(); })) << logs();
 }
 

@@ -165,7 +165,7 @@ TEST_P(SimulatedDaemons, CertifyDistancesAtTheSimulatedTimeThroughAPauseAndANewB
   }
 }
 
-// As from a player of bags: all that is of a time comes a whole step before the message of it.
+// A player of bags does so: all that is of a time comes a whole step before the message of it.
 TEST_F(SimulatedDaemon, UsesWhatComesBeforeTheMessageOfItsTime) {
   constexpr int kPlayedMs = 25;
   const std::string file = (folder / "run.mcap").string();

@@ -149,8 +149,9 @@ const clearance_msg_Catalogue* PermitReader::names_of(std::uint64_t revision) {
 bool PermitReader::has_joints(std::uint64_t revision) {
   const clearance_msg_Catalogue* const names = names_of(revision);
   return names != nullptr && std::ranges::all_of(options_.joints, [&](const std::string& joint) {
-           return std::ranges::any_of(list(names->joints),
-                                      [&](const auto& of_cell) { return joint == of_cell.name; });
+           return std::ranges::any_of(list(names->joints), [&](const auto& of_cell) {
+             return std::string_view(of_cell.name).ends_with(joint);
+           });
          });
 }
 
