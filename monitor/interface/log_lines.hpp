@@ -387,8 +387,7 @@ inline constexpr LogLine<Text, Text, Text> kPartnerOtherBuild{
 inline constexpr LogLine<Text> kPartnerStateRefused{"partner-state-refused", kWarn,
                                                     "the partner's state is not taken over: {}"};
 inline constexpr LogLine<Text> kPartnerFileNotKept{
-    "partner-file-not-kept", kWarn,
-    "a file that was sent along with a command to the partner is not kept here: {}"};
+    "partner-file-not-kept", kWarn, "a file of a command to the partner is not kept here: {}"};
 
 // ---- Shares
 
