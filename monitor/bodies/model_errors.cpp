@@ -182,7 +182,7 @@ ErrorAlong ModelErrors::along(const PosedPart& a, const PosedPart& b, const Vec3
   chains.angle = sums_a.angle + sums_b.angle;
 
   double first = kInfinity;
-  Vec3 at;
+  Vec3 at = Vec3::Zero();
   const PosedPart* on = nullptr;
   bool is_pointed = false;
   // What is nearer to its sources has shorter lever arms, and less of second order.
