@@ -35,7 +35,7 @@ TEST(BoundsForExactPoses, AreWidenedByTheErrorOfPlacingOnBothSides) {
 // Two balls on a line, each of which may be 1 cm off. Far from the origin, the places of parts are
 // not exact.
 TEST(BoundsWithStatedErrors, HoldForBallsApartInTouchInContactAndAtOnePlace) {
-  constexpr double kError = 0.01, kBall = 0.25, kGap = 0x1p-33;
+  constexpr double kError = 0.01, kRadius = 0.25, kGap = 0x1p-33;
   struct Gaps {
     double gap, least, most;
   };
@@ -46,12 +46,12 @@ TEST(BoundsWithStatedErrors, HoldForBallsApartInTouchInContactAndAtOnePlace) {
                        {-0.5, -0.5, -0.48}};
   for (const double from : {0.0, 1e6}) {
     for (const Gaps& row : rows) {
-      Scene scene = test::cell_of({test::moving("a", {test::ball(kBall, test::at(0.5, 0, 0))}),
-                                   test::moving("b", {test::ball(kBall)})});
+      Scene scene = test::cell_of({test::moving("a", {test::ball(kRadius, test::at(0.5, 0, 0))}),
+                                   test::moving("b", {test::ball(kRadius)})});
       for (Object& object : scene.objects) object.place_error.translation = kError;
       scene.pairs[0].publish = true;
       Monitor monitor(scene);
-      const Vec3 a(from - 0.5, 0, 0), b(from + 2.0 * kBall + row.gap, 0, 0);
+      const Vec3 a(from - 0.5, 0, 0), b(from + 2.0 * kRadius + row.gap, 0, 0);
       for (std::int64_t now = test::kStart; now < test::kStart + 3 * test::kTick;
            now += test::kTick) {
         const std::array samples{test::sample(0, {.position = a}, now),
