@@ -157,7 +157,7 @@ TEST(PermitsOfStops, HoldIfTheCellLacksAJointOfTheRobot) {
   test::write_text(folder / "cell.yaml",
                    "name: stops\nunits: {length: m, angle: rad}\nrate_hz: 100\n"
                    "defaults: {age_limit_ms: 10000}\n"
-                   "robots: [{name: arm, urdf: scara.urdf, joints: {elbow: {max_speed: 2}}, "
+                   "robots: [{name: arm, urdf: scara.urdf, joints: {elbow: {velocity: 2}}, "
                    "stopping: {reaction_ms: 40, time_ms: 200}}]\nobjects:\n"
                    "  - {name: pin, fixed: true, sphere: {radius: 0.1}, pose: {xyz: [9, 0, 0]}}\n"
                    "pairs: [{between: [arm, pin], publish: true}]\n"
