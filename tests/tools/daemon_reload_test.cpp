@@ -102,8 +102,10 @@ TEST_F(DaemonReload, TheSmallestDistanceAtTheEndIsThatOfAllCells) {
   const std::size_t zones = changed.find("zones:");
   changed.erase(zones, changed.find("simulation:") - zones);
   reload(changed);
-  run_until_told("scene-changed");
-  ASSERT_NE(revision, read.scene.revision);
+  ASSERT_TRUE(eventually([&] {
+    run_until_told("scene-changed");  // reports that were made before may still come
+    return revision != read.scene.revision;
+  }));
   daemon->signal(SIGTERM);
   EXPECT_EQ(daemon->wait(), 0);
   EXPECT_TRUE(daemon->wrote(", left - right, at cycle ")) << daemon->output();
