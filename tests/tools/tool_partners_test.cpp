@@ -68,6 +68,7 @@ TEST_F(ToolPartners, HaveTheSameBitsWhileToolsChange) {
   });
   EXPECT_TRUE(read_until([&] { return done == kChanges; }, 120)) << logs();
   sending.join();
+  EXPECT_FALSE(HasFailure()) << logs();
   EXPECT_TRUE(agree()) << logs();
   EXPECT_EQ(states[PartnerState::kDifferent] + states[PartnerState::kCorrupt], 0) << logs();
 }
