@@ -19,7 +19,7 @@ class ZoneCheck {
   // revision of the cell are left out.
   void check(const client::SharedCell& whole);
   [[nodiscard]] std::uint64_t wrong() const noexcept { return wrong_; }
-  // How often a zone became active because a share was not heard.
+  // Counts the times that a zone became active because a share was not heard.
   [[nodiscard]] std::uint64_t unheard() const noexcept { return unheard_; }
 
  private:

@@ -259,7 +259,7 @@ TEST_F(HiddenPlacesTest, WhatAPayloadItselfHidesIsNotCountedAsUnseenAndWhatHides
   }
 }
 
-// What a frame lists of one body says nothing of the others, nor of another sensor.
+// The places that a frame lists are of one body and one sensor. They say nothing of others.
 TEST_F(HiddenPlacesTest, OfBodiesThatAFrameDoesNotListHaveNoShell) {
   make(kImage + ", own_shell: 0.02" + kOverTheArm);
   for (const bool is_swapped : {false, true}) {

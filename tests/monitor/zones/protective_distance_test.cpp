@@ -142,7 +142,7 @@ TEST(LargestSpeed, LeavesEnoughAndNotMuchMore) {
   EXPECT_GT(some, 19'000);
 }
 
-// Where the distance is hardly more than that of a robot that stands, rounding decides.
+// Rounding decides if the distance is hardly more than that of a robot that stands.
 TEST(LargestSpeed, LeavesEnoughAtTheDistanceOfARobotThatStands) {
   Random random(14);
   int none = 0, some = 0;
