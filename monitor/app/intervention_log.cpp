@@ -84,7 +84,11 @@ InterventionLog::~InterventionLog() {
     const std::lock_guard lock(open_mutex);
     open_log = nullptr;
   }
-  finish();
+  {
+    const std::lock_guard lock(mutex_);
+    is_ending_ = true;
+    news_.notify_all();
+  }
   if (thread_.joinable()) thread_.join();
   if (descriptor_ >= 0) ::close(descriptor_);
 }
@@ -120,13 +124,16 @@ void InterventionLog::open() {
 }
 
 void InterventionLog::note(std::string_view kind, const ordered_json& fields) {
-  Entry entry{now_ns(), std::string(kind), members(fields)};
   const std::lock_guard lock(mutex_);
+  if (!is_ending_) put(kind, fields);
+}
+
+void InterventionLog::put(std::string_view kind, const ordered_json& fields) {
   if (waiting_.size() >= kMost || is_lost_) {
     ++left_out_;
     return;
   }
-  waiting_.push_back(std::move(entry));
+  waiting_.push_back({now_ns(), std::string(kind), members(fields)});
   news_.notify_all();
 }
 
@@ -211,9 +218,10 @@ std::string InterventionLog::write(const Entry& entry, std::uint64_t left_out) {
   return {};
 }
 
-void InterventionLog::finish() {
+void InterventionLog::finish(std::string_view kind, const ordered_json& fields) {
   std::unique_lock lock(mutex_);
-  if (std::exchange(is_ending_, true)) return;
+  put(kind, fields);
+  is_ending_ = true;
   news_.notify_all();
   hangs_ = !news_.wait_for(lock, kPatience, [this] { return has_ended_; });
   complete_ = !hangs_ && waiting_.empty() && left_out_ == 0;

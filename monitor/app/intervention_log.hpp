@@ -46,8 +46,9 @@ class InterventionLog {
 
   // Any thread but that of the tick. `fields`: an object.
   void note(std::string_view kind, const nlohmann::ordered_json& fields);
-  // Waits until all lines are written, at most kPatience.
-  void finish();
+  // Notes the last line: what another thread notes after it is dropped. Waits until all lines are
+  // written, at most kPatience.
+  void finish(std::string_view kind, const nlohmann::ordered_json& fields);
   static constexpr std::chrono::seconds kPatience{2};
   // After finish().
   [[nodiscard]] bool complete() const noexcept { return complete_; }
@@ -62,6 +63,7 @@ class InterventionLog {
   };
   void open();
   void run();
+  void put(std::string_view kind, const nlohmann::ordered_json& fields);
   void begin_next_file();
   // Each returns why it failed; empty: it is done.
   [[nodiscard]] std::string write(const Entry& entry, std::uint64_t left_out);

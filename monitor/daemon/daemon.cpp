@@ -215,11 +215,11 @@ void Daemon::run(StopSignal& signal) {
              loop_->state().cycle());
   log_line(lines::kStopped, counted(loop_->statistics().cycle, "tick"));
   if (options_.interventions == nullptr) return;
-  options_.interventions->note("stop", {{"ticks", loop_->statistics().cycle},
-                                        {"cause", damaged()         ? "self-test"
-                                                  : yielded()       ? "another daemon"
-                                                  : ended_by_itself ? "--ticks"
-                                                                    : "signal"}});
+  options_.interventions->finish("stop", {{"ticks", loop_->statistics().cycle},
+                                          {"cause", damaged()         ? "self-test"
+                                                    : yielded()       ? "another daemon"
+                                                    : ended_by_itself ? "--ticks"
+                                                                      : "signal"}});
 }
 
 // Both threads are prepared and wait for work. join() has logged a refusal of this priority.

@@ -271,7 +271,6 @@ int run_daemon(const Cell& cell, Arguments& arguments, StopSignal& signal) {
     arguments.daemon.interventions = &interventions.emplace(arguments.interventions);
   Daemon daemon(cell, arguments.daemon);
   daemon.run(signal);
-  if (interventions) interventions->finish();
   write_text(stdout, daemon.summary(), Patience::kBrief);
   const bool is_written = arguments.histograms.empty() ||
                           write_file("clearanced", arguments.histograms, daemon.histograms());

@@ -28,6 +28,9 @@ constexpr std::int64_t kMillisecond = 1'000'000;
 
 std::int64_t monotonic_ns() { return SystemClock().monotonic_ns(); }
 
+// What discovery needs: 2 to 12 ms, or longer on a busy machine.
+constexpr std::int64_t kSettleNs = 300 * kMillisecond;
+
 // The writers of a recording's channels, each made when its channel first occurs.
 class Writers {
  public:
@@ -47,6 +50,11 @@ class Writers {
     }));
   }
   [[nodiscard]] std::size_t count() const { return writers_.size(); }
+  // A reader may discover the writer later than the writer discovers it. Samples that the writer's
+  // history keeps reach it; what is behind them would be lost.
+  void let_first_arrive(dds_entity_t writer) {
+    if (begun_.insert(writer).second) dds_wait_for_acks(writer, kSettleNs);
+  }
   void wait_until_delivered() const {
     for (const auto& [topic, writer] : writers_) dds_wait_for_acks(writer, DDS_SECS(1));
   }
@@ -54,6 +62,7 @@ class Writers {
  private:
   Participant& participant_;
   std::map<std::string, dds_entity_t> writers_;
+  std::set<dds_entity_t> begun_;  // have written
 };
 
 // Maps log times to the times at which a replay at some rate publishes, CLOCK_REALTIME.
@@ -228,16 +237,11 @@ bool Publishing::prepare() {
   for (int i = 0; i < 1000 && reader.next(message); ++i) {
     if (wanted(message)) writers_.of(message);
   }
-  // Once one topic has a reader, the others get a moment more. Discovery of all readers takes 2 to
-  // 12 ms, or longer on a busy machine.
-  constexpr std::int64_t kSettleNs = 300 * kMillisecond;
+  // Once a topic has a reader, the others get a moment more.
   std::int64_t until = monotonic_ns() + std::llround(arguments_.wait_s * 1e9);
-  bool heard = false;
-  while (writers_.heard() < writers_.count() && monotonic_ns() < until) {
-    if (!heard && writers_.heard() > 0) {
-      heard = true;
-      until = monotonic_ns() + kSettleNs;
-    }
+  for (std::size_t heard = 0; heard < writers_.count() && monotonic_ns() < until;) {
+    if (writers_.heard() > heard) until = monotonic_ns() + kSettleNs;
+    heard = writers_.heard();
     if (stop_.wait(5)) return false;
   }
   if (writers_.heard() == 0) {
@@ -255,7 +259,9 @@ bool Publishing::publish(const RecordedMessage& message) {
   }
   const auto after = static_cast<double>(message.log_ns - began_log_ns_) / arguments_.rate;
   if (!wait_until(began_ns_ + static_cast<std::int64_t>(after), stop_)) return false;
-  if (sender_.send(message, writers_.of(message))) {
+  const dds_entity_t writer = writers_.of(message);
+  if (sender_.send(message, writer)) {
+    writers_.let_first_arrive(writer);
     ++published_;
   } else {
     ++undecodable_;

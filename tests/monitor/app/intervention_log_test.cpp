@@ -102,6 +102,16 @@ TEST_F(Interventions, GetTheLogLinesThatTellOfOneWhateverTheirLevelAndWhateverTh
   EXPECT_EQ(read["text"], "source 'a\xef\xbf\xbd\"b' is now writer 2; before, it was writer 1");
 }
 
+TEST_F(Interventions, EndWithTheLastLineWhateverOtherThreadsNoteMeanwhile) {
+  InterventionLog log(file);
+  std::jthread other([&](const std::stop_token& stop) {
+    while (!stop.stop_requested()) log.note("other", {});
+  });
+  ASSERT_TRUE(eventually([&] { return std::filesystem::file_size(file) > 0; }));
+  log.finish("last", {});
+  EXPECT_EQ(kinds().back(), "last");
+}
+
 TEST_F(Interventions, OfAFullDiskWaitAndAreWrittenOnceThereIsRoom) {
   write("first");
   std::signal(SIGXFSZ, SIG_IGN);
@@ -117,8 +127,7 @@ TEST_F(Interventions, OfAFullDiskWaitAndAreWrittenOnceThereIsRoom) {
   // A line that is being written may be read in part.
   const auto lines = [this] { return std::ranges::count(test::read_text(file), '\n'); };
   ASSERT_TRUE(eventually([&] { return lines() == InterventionLog::kMost + 2; }));
-  log.note("last", {});
-  log.finish();
+  log.finish("last", {});
   EXPECT_EQ(log.complete(), true);
   const std::vector<std::string> all = kinds();
   EXPECT_EQ(all[1], "left-out");
@@ -133,8 +142,7 @@ TEST_F(Interventions, AreIncompleteIfTheDiskStaysFull) {
   const rlimit full{10, before.rlim_max};
   InterventionLog log(file);
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &full), 0);
-  log.note("lost", {});
-  log.finish();
+  log.finish("lost", {});
   ASSERT_EQ(::setrlimit(RLIMIT_FSIZE, &before), 0);
   EXPECT_FALSE(log.complete());
   EXPECT_FALSE(log.hangs());
@@ -144,8 +152,8 @@ TEST_F(Interventions, AreIncompleteIfTheDiskStaysFull) {
 TEST_F(Interventions, OfALargeFileGoOnInANewOneWhoseFirstLineHoldsTheHashOfTheLast) {
   {
     InterventionLog log(file, 600);
-    for (int i = 0; i < 8; ++i) log.note("note", {{"i", i}});
-    log.finish();
+    for (int i = 0; i < 7; ++i) log.note("note", {{"i", i}});
+    log.finish("note", {{"i", 7}});
     EXPECT_TRUE(log.complete());
   }
   std::vector<std::filesystem::path> files;
@@ -183,8 +191,7 @@ TEST_F(Interventions, GetNoLineInAFileThatAnotherProgramHasChangedOrMoved) {
     } else {
       std::filesystem::resize_file(file, 0);
     }
-    log.note("second", {});
-    log.finish();
+    log.finish("second", {});
     EXPECT_FALSE(log.complete()) << moves;
     std::error_code none;
     EXPECT_EQ(moves ? std::filesystem::exists(file, none) : test::read_text(file) != "", false);
