@@ -26,7 +26,7 @@ namespace clearance {
 class SimulatedTime {
  public:
   static constexpr std::int64_t kSilentNs = 1'000'000'000;
-  // A larger step is a jump: the time stands still from then until the next message.
+  // A larger step is a jump: until the next message, only stamps of inputs lead the time on.
   static constexpr std::int64_t kLongestStepNs = 250'000'000;
   // A message of the clock may come so much later than what was sent after it, simulated ns.
   static constexpr std::int64_t kLateNs = 5'000'000;

@@ -237,7 +237,7 @@ bool Publishing::prepare() {
   for (int i = 0; i < 1000 && reader.next(message); ++i) {
     if (wanted(message)) writers_.of(message);
   }
-  // Once a topic has a reader, the others get a moment more.
+  // As soon as a topic has a reader, the others get a moment more.
   std::int64_t until = monotonic_ns() + std::llround(arguments_.wait_s * 1e9);
   for (std::size_t heard = 0; heard < writers_.count() && monotonic_ns() < until;) {
     if (writers_.heard() > heard) until = monotonic_ns() + kSettleNs;
