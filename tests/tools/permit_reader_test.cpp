@@ -58,11 +58,12 @@ class PermitReaderTest : public testing::Test {
       told.push_back(cause);
     });
   }
-  // Sends poses at this height until the permit is so.
+  // Sends poses at this height until the permit is so. They have no twists: a stated standstill
+  // would contradict the move.
   bool comes(double height, const std::function<bool(const Permit&)>& is_so) {
     poses.move_by({0.0, 0.0, height - 1.0});
     return test::eventually([&] {
-      poses.send(0.0);
+      poses.send(0.0, false);
       return is_so(reader->newest());
     });
   }

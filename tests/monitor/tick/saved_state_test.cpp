@@ -191,7 +191,7 @@ TEST_F(ForgedState, WithAnyOneFieldHostileIsRefusedOrHarmless) {
 
 TEST_F(ForgedState, WithDrawnBytesIsRefusedOrHarmless) {
   Random random(63);
-  for (std::uint64_t forgery = 0; forgery < repeats(forgeries()); ++forgery) {
+  for (std::uint64_t forgery = 0; forgery < repeats(forgeries(), 16); ++forgery) {
     std::vector<std::byte> bytes = genuine;
     for (int changes = random.integer(1, 3); changes > 0; --changes) {
       const std::uint64_t value =
@@ -203,8 +203,8 @@ TEST_F(ForgedState, WithDrawnBytesIsRefusedOrHarmless) {
     expect_harmless(bytes);
     ASSERT_FALSE(HasFatalFailure()) << forgery;
   }
-  EXPECT_GT(refused, repeats(forgeries()) / 10);
-  EXPECT_GT(joined_states, repeats(forgeries()) / 10);
+  EXPECT_GT(refused, repeats(forgeries(), 16) / 10);
+  EXPECT_GT(joined_states, repeats(forgeries(), 16) / 10);
 }
 
 }  // namespace
