@@ -203,7 +203,7 @@ void add_inputs(CommandLine& line, CheckArguments& arguments) {
       {"--tick-hz", &arguments.tick_hz,
        "Tick rate, Hz; 0: one tick per message. Default: the cell's rate for bags and joint logs, "
        "0 for recordings without reports. Recordings with reports always use their own ticks",
-       number_from_zero()},
+       number_in(0.0, 1e6)},
       {"--joint-topic", &arguments.joint_topics,
        "Use joint states of this topic of the bag, for example /left/joint_states; repeatable. "
        "Default: every topic named joint_states"},

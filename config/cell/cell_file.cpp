@@ -176,8 +176,7 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   PairList pairs;
   pairs.complete = false;
   if (pairs_node != nullptr)
-    pairs =
-        read_pairs(*pairs_node, allowed_node, list, robots.may_touch, group_index, diagnostics_);
+    pairs = read_pairs(*pairs_node, allowed_node, list, robots, group_index, diagnostics_);
   if (zones_node != nullptr)
     cell.scene.zones = read_zones(*zones_node, list, group_index, quantities, pairs);
   if (contacts_node != nullptr) {

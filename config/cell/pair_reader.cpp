@@ -8,20 +8,25 @@
 #include <string>
 #include <utility>
 
+#include "config/cell/robot_reader.hpp"
+#include "config/scene/people.hpp"
+
 namespace clearance {
 namespace {
 
 // Reads rules first, then exceptions from them; finish() makes the rest the pairs of the scene.
 class PairReader {
  public:
-  PairReader(const ObjectList& objects, GroupIndex& group_index, Diagnostics& diagnostics)
+  PairReader(const ObjectList& objects, const RobotList& robots, GroupIndex& group_index,
+             Diagnostics& diagnostics)
       : objects_(objects),
+        robots_(robots),
         group_index_(group_index),
         diagnostics_(diagnostics),
         without_motion_(objects.objects.size(), false) {}
 
   void read_rules(const YamlNode& node);
-  void allow(const PairExceptions& exceptions);
+  void allow_by_descriptions();
   void read_exceptions(const YamlNode& node);
   PairList finish(const YamlNode& rules);
 
@@ -37,11 +42,13 @@ class PairReader {
   void read_rule(const YamlNode& node);
   void read_exception(const YamlNode& node);
   Candidate* find(PairKey key);
+  std::optional<std::string> why_never(PairKey key) const;
   std::string why_nothing(const Between& between, const std::vector<PairKey>& keys);
   void note_without_motion(const Between& between);
   void refuse_unwatched_objects() const;
 
   const ObjectList& objects_;
+  const RobotList& robots_;
   GroupIndex& group_index_;
   Diagnostics& diagnostics_;
   // Sorted by key once the rules have been read.
@@ -128,11 +135,19 @@ PairReader::Candidate* PairReader::find(PairKey key) {
   return found != candidates_.end() && found->key == key ? &*found : nullptr;
 }
 
-// Many of these pairs are not watched anyway, since a description lists them for a whole robot.
-void PairReader::allow(const PairExceptions& exceptions) {
-  for (const auto& [key, line] : exceptions) {
+// Zones, which refuse more of these pairs, are read later.
+std::optional<std::string> PairReader::why_never(PairKey key) const {
+  return contact_with_people(objects_.objects, robots_.robots, {}, {}, first_of(key),
+                             second_of(key));
+}
+
+// Many of these pairs are not watched anyway, since a description lists them for a whole robot. A
+// person and a robot stay watched.
+void PairReader::allow_by_descriptions() {
+  for (const auto& [key, line] : robots_.may_touch) {
     Candidate* candidate = find(key);
-    if (candidate != nullptr && candidate->allowed_line == 0) candidate->allowed_line = line;
+    if (candidate != nullptr && candidate->allowed_line == 0 && !why_never(key))
+      candidate->allowed_line = line;
   }
 }
 
@@ -173,6 +188,7 @@ void PairReader::read_exception(const YamlNode& node) {
   for (const PairKey key : keys) {
     Candidate* candidate = find(key);
     if (candidate == nullptr || candidate->allowed_line != 0) continue;
+    if (const auto why = why_never(key)) return diagnostics_.add(node, *why);
     candidate->allowed_line = node.line;
     removed = true;
   }
@@ -234,11 +250,10 @@ std::optional<std::uint32_t> pair_index(const std::vector<ObjectPair>& pairs, Pa
 
 // Exceptions are read after all rules: they refer to what the rules as a whole watch.
 PairList read_pairs(const YamlNode& pairs, const YamlNode* allowed, const ObjectList& objects,
-                    const PairExceptions& exceptions, GroupIndex& group_index,
-                    Diagnostics& diagnostics) {
-  PairReader reader(objects, group_index, diagnostics);
+                    const RobotList& robots, GroupIndex& group_index, Diagnostics& diagnostics) {
+  PairReader reader(objects, robots, group_index, diagnostics);
   reader.read_rules(pairs);
-  reader.allow(exceptions);
+  reader.allow_by_descriptions();
   if (allowed != nullptr) reader.read_exceptions(*allowed);
   return reader.finish(pairs);
 }

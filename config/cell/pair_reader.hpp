@@ -10,6 +10,8 @@
 
 namespace clearance {
 
+struct RobotList;
+
 // The pairs to watch, and those that the cell allows to touch.
 struct PairList {
   std::vector<ObjectPair> pairs;  // ascending by first, then second
@@ -29,10 +31,11 @@ inline constexpr std::size_t kMaxPublished = 4096;
 // Pairs that may touch by a robot's description, and the line of the robot.
 using PairExceptions = std::vector<std::pair<PairKey, int>>;
 
-// `allowed` may be nullptr. Reports rules and exceptions that change nothing, objects without a
-// watched pair, and more pairs with `publish: true` than a report can carry.
+// `allowed` may be nullptr. Reports rules and exceptions that change nothing, exceptions of a
+// person and a robot, objects without a watched pair, and more pairs with `publish: true` than a
+// report can carry.
 [[nodiscard]] PairList read_pairs(const YamlNode& pairs, const YamlNode* allowed,
-                                  const ObjectList& objects, const PairExceptions& exceptions,
+                                  const ObjectList& objects, const RobotList& robots,
                                   GroupIndex& group_index, Diagnostics& diagnostics);
 
 }  // namespace clearance

@@ -37,7 +37,9 @@ std::optional<std::string> Posture::set_free(const StatedJoint& stated, OthersMo
     return std::nullopt;
   }
   const JointVariable& joint = scene_.variables[variable];
-  FreeVariable free{.variable = variable, .speed = joint.max_speed, .age = stated.age};
+  // A joint that exceeds its limit is not bounded by it.
+  FreeVariable free{
+      .variable = variable, .speed = std::max(joint.max_speed, stated.speed), .age = stated.age};
   const double most = std::max(joint.upper - stated.position, stated.position - joint.lower) +
                       joint.limit_tolerance;
   if (std::isfinite(most)) free.most = std::max(0.0, rounded_up(most));

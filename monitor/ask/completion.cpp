@@ -126,7 +126,11 @@ std::optional<std::string> complete(const Scene& scene, const InputState& state,
       continue;
     }
     if (!is_of_question[variable.robot]) {
-      question.joints.push_back({variable.name, joint.position, state.joint_ages[i]});
+      question.joints.push_back(
+          {.name = variable.name,
+           .position = joint.position,
+           .age = state.joint_ages[i],
+           .speed = std::isnan(joint.velocity) ? 0.0 : std::abs(joint.velocity)});
       continue;
     }
     const bool may_move = question.others == OthersMove::kWithinMaxSpeed;

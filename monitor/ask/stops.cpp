@@ -210,6 +210,7 @@ void Stops::state_others(const Inputs& inputs, const CloudPairs* clouds, double 
     const TrackedVariable& state = inputs.robots.variables()[v];
     stated.position = state.input.has_value ? state.position : 0.0;
     stated.age = state.input.has_value ? age(state.input) : time;
+    stated.speed = state.input.has_value ? std::abs(state.velocity) : 0.0;
     stated.most = kInfinity;
     const std::uint32_t stopping = stopping_of_robot_[scene_.variables[v].robot];
     if (!std::ranges::binary_search(robot.beside, scene_.variables[v].robot)) {
@@ -256,7 +257,8 @@ void Stops::note_changes(const Inputs& inputs, const StoppingRobot& robot) noexc
     }
     const StatedJoint& stated = question.joints[next++];
     const double offset = std::abs(stated.position - inputs.robots.variables()[v].position);
-    const double by_speed = swept(stated.age, scene_.variables[v].max_speed);
+    const double by_speed =
+        swept(stated.age, std::max(scene_.variables[v].max_speed, stated.speed));
     changes_[v] = offset == 0.0 ? std::min(stated.most, by_speed) : stated.most + offset;
   }
   std::size_t pose = 0, frame = 0;

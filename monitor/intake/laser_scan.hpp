@@ -24,6 +24,8 @@ class ScanCloud final : public MessageCloud {
  public:
   // Rays that are farther apart have gaps that no ball may span, rad.
   static constexpr double kWidestIncrement = 0.1;
+  // Of a ray in the frame: float32 does not tell much larger ones apart, rad.
+  static constexpr double kLargestAngle = 4.0 * std::numbers::pi;
 
   Sample<sensor_msgs_msg_dds__LaserScan_> sample;
 
@@ -92,9 +94,11 @@ class ScanCloud final : public MessageCloud {
     const double between = columns - 1, increment = sample->angle_increment;
     const double step = std::abs(increment), last = sample->angle_min + between * increment;
     // Some drivers count one ray more or less between the angles.
-    const bool fits = std::isfinite(last) && (columns == 1 || step > 0.0) &&
-                      std::abs(last - sample->angle_max) <= 1.5 * step + 1e-4 &&
-                      between * step <= 2.0 * std::numbers::pi + step;
+    const bool fits =
+        std::isfinite(last) && (columns == 1 || step > 0.0) &&
+        std::abs(last - sample->angle_max) <= 1.5 * step + 1e-4 &&
+        between * step <= 2.0 * std::numbers::pi + step &&
+        std::max(std::abs<double>(sample->angle_min), std::abs(last)) <= kLargestAngle;
     if (!fits || !(sample->range_min >= 0.0F && sample->range_min <= sample->range_max))
       return FrameFault::kLayout;
     if (step > kWidestIncrement) return FrameFault::kWideRays;

@@ -42,6 +42,7 @@ struct StatedJoint {
   double position = 0.0;    // rad or m
   double age = 0.0;         // s, from 0 on: it was there this long before the first waypoint
   double most = kInfinity;  // rad or m: it deviates from there by no more
+  double speed = 0.0;       // rad/s or m/s: its last one, which may exceed its max_speed
 };
 
 struct StatedPose {

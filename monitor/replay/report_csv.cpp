@@ -121,13 +121,16 @@ void ReportCsv::add(const ReplayedTick& tick) {
   if (!error_.empty()) return;
   if (&tick.cell.scene != scene_) follow(tick.cell.scene);
   note_stops(tick.report);
-  if (all_pairs_) {
-    for (std::uint32_t pair = 0; pair < scene_->pairs.size(); ++pair) {
-      add_row(tick.report, tick.monitor.pair(pair));
-    }
-  } else {
-    for (const PairReport& pair : tick.report.pairs) add_row(tick.report, pair);
+  // Only published pairs have the figures of stops.
+  std::uint32_t next = 0;
+  for (const PairReport& published : tick.report.pairs) {
+    for (; all_pairs_ && next < published.pair; ++next)
+      add_row(tick.report, tick.monitor.pair(next));
+    add_row(tick.report, published);
+    next = published.pair + 1;
   }
+  for (; all_pairs_ && next < scene_->pairs.size(); ++next)
+    add_row(tick.report, tick.monitor.pair(next));
   if (rows_.size() >= kWriteAt) write();
 }
 

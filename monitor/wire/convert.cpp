@@ -5,14 +5,15 @@
 
 #include <algorithm>
 #include <cstring>
-#include <functional>
 #include <limits>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "monitor/files/build_info.hpp"
 #include "monitor/wire/from_wire.hpp"
 #include "monitor/wire/to_wire.hpp"
+#include "monitor/wire/two_values.hpp"
 
 namespace clearance {
 namespace {
@@ -240,6 +241,35 @@ Sample<clearance_msg_Catalogue> make_catalogue(const Cell& cell, const SceneInFo
   return sample;
 }
 
+namespace {
+
+void refuse_two_positions(std::vector<JointSample>& joints) {
+  // Names that no robot has, or several, stay as they are.
+  const auto known = [](const JointSample& sample) {
+    return sample.variable < JointNames::kUnused;
+  };
+  refuse_two_values(
+      joints, [](const JointSample& sample) { return sample.variable; },
+      [&](const JointSample& a, const JointSample& b) {
+        return !known(a) || a.position == b.position;
+      },
+      [](JointSample& sample) { sample.position = std::numeric_limits<double>::quiet_NaN(); });
+}
+
+void refuse_two_poses(std::vector<PoseSample>& poses) {
+  refuse_two_values(
+      poses, [](const PoseSample& sample) { return std::pair(sample.object, sample.stamp_ns); },
+      [](const PoseSample& a, const PoseSample& b) {
+        return a.world_from_object.position == b.world_from_object.position &&
+               a.world_from_object.orientation.coeffs() == b.world_from_object.orientation.coeffs();
+      },
+      [](PoseSample& sample) {
+        sample.world_from_object.position.setConstant(std::numeric_limits<double>::quiet_NaN());
+      });
+}
+
+}  // namespace
+
 // Quaternions are x, y, z, w on the wire.
 void from_wire(const clearance_msg_PoseBatch& batch, PoseBatch& out) {
   out.source = SourceName(batch.source);
@@ -259,34 +289,8 @@ void from_wire(const clearance_msg_PoseBatch& batch, PoseBatch& out) {
     sample.twist.linear = from_wire(pose.linear);
     sample.twist.angular = from_wire(pose.angular);
   }
+  refuse_two_poses(out.samples);
 }
-
-namespace {
-
-// Of two positions of one joint in one message, none could be meant. NaN is refused as not finite.
-// Most messages have their joints in the order of the scene. Others are sorted, since a message may
-// have as many entries as its sender likes.
-void refuse_two_positions(std::vector<JointSample>& joints) {
-  const auto out_of_order =
-      std::ranges::adjacent_find(joints, std::ranges::greater_equal(), &JointSample::variable);
-  if (out_of_order == joints.end()) return;
-  std::vector<JointSample*> sorted;
-  for (JointSample& sample : joints)
-    if (sample.variable < JointNames::kUnused) sorted.push_back(&sample);
-  std::ranges::stable_sort(sorted, {}, &JointSample::variable);
-  for (auto first = sorted.begin(); first != sorted.end();) {
-    const auto end = std::find_if(first, sorted.end(), [&](const JointSample* sample) {
-      return sample->variable != (*first)->variable;
-    });
-    const bool differ = std::any_of(first, end, [&](const JointSample* sample) {
-      return !(sample->position == (*first)->position);
-    });
-    for (; first != end; ++first)
-      if (differ) (*first)->position = std::numeric_limits<double>::quiet_NaN();
-  }
-}
-
-}  // namespace
 
 void from_wire(const clearance_msg_JointStates& states, const JointNames& names, PoseBatch& out) {
   out.source = SourceName(states.source);

@@ -136,6 +136,12 @@ def test_a_wrong_argument_is_an_exception(planar, joints, poses, error):
     assert np.isfinite(planar.distances([[0, 0]]).lower).any()  # and the cell works as before
 
 
+def test_a_pose_of_a_sensor_is_refused(arm_files):
+    cell = clearance.Cell(arm_files[0].parents[1] / "camera.yaml")
+    with pytest.raises(ValueError, match="'camera' is a sensor"):
+        cell.distances(np.zeros((1, len(cell.joints))), {"camera": [0, 0, 1, 0, 0, 0, 1]})
+
+
 def test_a_position_out_of_limits_is_named(planar):
     with pytest.raises(ValueError, match=r"joints\[1, 1\].*elbow"):
         planar.distances([[0, 0], [0, 9]])

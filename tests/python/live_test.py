@@ -220,6 +220,13 @@ def test_an_unknown_object_of_poses_is_named(daemon):
                 writer.write([[0, 0, 0, 0, 0, 0, 1]])
 
 
+def test_a_writer_has_each_joint_and_each_object_once(daemon):
+    with pytest.raises(ValueError, match="the object 'ball' twice"):
+        clearance.PoseWriter("python", ["ball", "ball"], daemon.connection())
+    with pytest.raises(ValueError, match="the joint 'a' twice"):
+        clearance.JointWriter("python", ["a", "b", "a"], daemon.connection())
+
+
 def test_a_daemon_that_ends_is_noticed(daemon):
     with clearance.Reports(daemon.connection()) as reports:
         assert reports.next(LIMIT_S) is not None

@@ -71,10 +71,15 @@ TEST(Person, MayBeInNoContactWithWhatMoves) {
     return "contacts: [{name: c, between: [" + a + ", " + b +
            "], depth: 0.05, by: me, reason: test}]\n";
   };
-  EXPECT_THAT(errors_of(text("max_speed: 1", contact("l_elbow_anna", "post"))),
-              HasSubstr("'l_elbow_anna' against 'post'"));
-  EXPECT_EQ(errors_of(text("fixed: true", contact("l_elbow_anna", "post"))), "");
-  EXPECT_EQ(errors_of(text("max_speed: 1", contact("l_elbow_anna", "l_elbow_bert"))), "");
+  const auto left_out = [](const std::string& a, const std::string& b) {
+    return "allowed_collisions: [{between: [" + a + ", " + b + "], reason: test}]\n";
+  };
+  for (const auto& meant : {+contact, +left_out}) {
+    EXPECT_THAT(errors_of(text("max_speed: 1", meant("l_elbow_anna", "post"))),
+                HasSubstr("'l_elbow_anna' against 'post'"));
+    EXPECT_EQ(errors_of(text("fixed: true", meant("l_elbow_anna", "post"))), "");
+    EXPECT_EQ(errors_of(text("max_speed: 1", meant("l_elbow_anna", "l_elbow_bert"))), "");
+  }
 }
 
 // Drillis and Contini: the upper arm has 0.186 of the stature, the shank 0.246.

@@ -67,6 +67,8 @@ TEST(AssumedMotion, ASlidingJointComesNearerByItsSpeedAndNoFartherThanItsLimit) 
   Answer answer = answered(scene, question);
   EXPECT_NEAR(answer.lower, now - 0.5 * 0.2, 1e-6);
   EXPECT_NEAR(answer.upper, now - 0.5 * 0.2, 1e-6);
+  question.joints[0].speed = 0.6;
+  EXPECT_NEAR(answered(scene, question).lower, now - 0.6 * 0.2, 1e-6) << "beyond its limit";
   question.joints[0].age = 9.0;
   answer = answered(scene, question);
   const auto push = std::ranges::find(scene.variables, "right_push", &JointVariable::name);

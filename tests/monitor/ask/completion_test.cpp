@@ -170,6 +170,7 @@ TEST(QuestionCompletion, TakesTheJointsOfOtherRobotsAsThoseThatOthersMove) {
   EXPECT_EQ(question.joints[0].name, "right_shoulder");
   EXPECT_EQ(question.joints[2].position, 0.1 * 5);
   EXPECT_EQ(question.joints[2].age, 0.01 * 5);
+  EXPECT_EQ(question.joints[2].speed, 5.0);
 }
 
 }  // namespace

@@ -181,6 +181,8 @@ TEST_F(LaserScans, ThatCannotBeWhatTheySayAreRefusedByCause) {
   EXPECT_EQ(with([](ScanText& t) { t.range_max = kNan; }), Fault::kLayout);
   EXPECT_EQ(with([](ScanText& t) { t.angle_increment = 0.2F, t.angle_max = 7.0F; }), Fault::kLayout)
       << "more than a turn";
+  EXPECT_EQ(with([](ScanText& t) { t.angle_min = t.angle_max = 1e30F; }), Fault::kLayout)
+      << "all rays have one angle as float32";
   EXPECT_EQ(with([](ScanText& t) { t.angle_increment = 0.11F, t.angle_max = 3.4F; }),
             Fault::kWideRays);
   EXPECT_EQ(with([](ScanText& t) { t.time_increment = 0.00099F; }), Fault::kNoFault);

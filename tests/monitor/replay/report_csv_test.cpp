@@ -51,6 +51,7 @@ TEST(ReportCsv, HasScalingShareAndLimitingPairOfEachRobotThatStops) {
   StoppingTicks ticks(arm.scene);
   ReportCsv csv(folder / "t.csv", arm.scene, true);
   std::vector<RobotStop> stops;
+  std::vector<double> lowers;       // by tick: of the only pair
   std::vector<std::size_t> of_row;  // by row: its tick
   for (const double velocity : {-1.0, 1.9}) {
     const Report& report = ticks.tick(0.0, velocity);
@@ -58,6 +59,9 @@ TEST(ReportCsv, HasScalingShareAndLimitingPairOfEachRobotThatStops) {
     ASSERT_EQ(report.stops.size(), 1u);
     of_row.insert(of_row.end(), arm.scene.pairs.size(), stops.size());
     stops.push_back(report.stops.front());
+    ASSERT_EQ(report.pairs.size(), 1u);
+    lowers.push_back(report.pairs.front().stop_lower);
+    ASSERT_GE(lowers.back(), 0.0);
   }
   ASSERT_EQ(stops[0].scaling, 1.0);
   ASSERT_GT(stops[1].scaling, 0.0);
@@ -81,6 +85,7 @@ TEST(ReportCsv, HasScalingShareAndLimitingPairOfEachRobotThatStops) {
     EXPECT_EQ(rows[i]["arm/stop_pair"], "ball - finger");
     EXPECT_EQ(number(rows[i]["arm/stop_share"]), stop.share);
     EXPECT_EQ(number(rows[i]["arm/stop_time"]), stop.time);
+    EXPECT_EQ(number(rows[i]["stop_lower"]), lowers[of_row[i]]);
   }
   for (std::size_t i = of_row.size(); i < rows.size(); ++i) {
     for (const auto& [column, value] : rows[i])

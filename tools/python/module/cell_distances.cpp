@@ -241,6 +241,9 @@ void place_objects(const Scene& scene, const py::dict& poses, Configurations& co
       throw py::key_error(fmt::format("poses: the cell has no object '{}'", name));
     if (scene.objects[i].fixed)
       throw py::value_error(fmt::format("poses: '{}' is fixed; expected a moving object", name));
+    if (scene.objects[i].is_seen())
+      throw py::value_error(fmt::format(
+          "poses: '{}' is a sensor; expected an object whose shape the cell states", name));
     for (const Robot& robot : scene.robots) {
       for (const RobotLink& link : robot.links) {
         if (link.object == i)

@@ -38,12 +38,12 @@ bool wait_heard(Parts& parts, const std::optional<double>& timeout_s) {
   });
 }
 
-// Of two positions of one joint, none could be meant.
-std::vector<std::string> each_once(std::vector<std::string> names) {
+// Of two positions of one joint, or two poses of one object, none could be meant.
+std::vector<std::string> each_once(std::vector<std::string> names, const char* what) {
   for (auto name = names.begin(); name != names.end(); ++name) {
     if (std::find(names.begin(), name, *name) == name) continue;
     throw py::value_error(
-        fmt::format("names: found the joint '{}' twice; expected each joint once", *name));
+        fmt::format("found the {0} '{1}' twice; expected each {0} once", what, *name));
   }
   return names;
 }
@@ -60,7 +60,8 @@ class JointWriter : public Live<JointParts> {
  public:
   JointWriter(const std::string& source, std::vector<std::string> names,
               const SharedConnection& connection)
-      : Live("JointWriter", connection_of(connection), source, each_once(std::move(names))) {}
+      : Live("JointWriter", connection_of(connection), source,
+             each_once(std::move(names), "joint")) {}
 
   bool write(const py::object& positions, const py::object& velocities,
              const std::optional<std::int64_t>& stamp_ns, bool stopping) {
@@ -106,6 +107,7 @@ class PoseWriter : public Live<PoseParts> {
     const std::uint64_t revision = parts->catalogue.revision();
     if (revision == 0) return false;
     std::vector<clearance_msg_ObjectPose> message;
+    const std::int64_t held_ns = stamp_of(stamp_ns);
     py::ssize_t i = 0;
     for (client::Object& object : parts->objects) {
       const std::optional<std::uint32_t> id = object.id(revision);
@@ -115,7 +117,7 @@ class PoseWriter : public Live<PoseParts> {
       const Eigen::Quaterniond& q = pose.orientation;
       clearance_msg_ObjectPose& one = message.emplace_back();
       one.object = *id;
-      one.stamp_ns = stamp_of(stamp_ns);
+      one.stamp_ns = held_ns;
       one.position = {pose.position.x(), pose.position.y(), pose.position.z()};
       one.orientation = {q.x(), q.y(), q.z(), q.w()};
       one.has_twist = speeds.has_value();
@@ -134,7 +136,7 @@ class PoseWriter : public Live<PoseParts> {
     if (objects.empty() || objects.size() > clearance_msg_kMaxPoses)
       throw py::value_error(fmt::format("objects: found {} names; expected 1 to {}", objects.size(),
                                         clearance_msg_kMaxPoses));
-    return objects;
+    return each_once(std::move(objects), "object");
   }
 };
 
