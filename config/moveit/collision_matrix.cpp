@@ -2,7 +2,20 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
+
 namespace clearance::moveit {
+namespace {
+
+// Of two entries of one name, none could be meant.
+std::optional<FieldFault> refuse_double(const char* field, std::vector<std::string> names) {
+  std::ranges::sort(names);
+  const auto twice = std::ranges::adjacent_find(names);
+  if (twice == names.end()) return std::nullopt;
+  return FieldFault{field, fmt::format("found '{}' twice; expected each name once", *twice)};
+}
+
+}  // namespace
 
 std::optional<FieldFault> CollisionMatrix::set(const AllowedCollisionMatrix& matrix) {
   const std::size_t count = matrix.entry_names.size();
@@ -22,6 +35,8 @@ std::optional<FieldFault> CollisionMatrix::set(const AllowedCollisionMatrix& mat
         fmt::format("found {} values for {} names; expected one each",
                     matrix.default_entry_values.size(), matrix.default_entry_names.size())};
   }
+  if (auto fault = refuse_double("entry_names", matrix.entry_names)) return fault;
+  if (auto fault = refuse_double("default_entry_names", matrix.default_entry_names)) return fault;
   is_set_ = true;
   rows_ = matrix.entry_values;
   places_.clear();

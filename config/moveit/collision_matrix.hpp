@@ -15,7 +15,7 @@ namespace clearance::moveit {
 class CollisionMatrix {
  public:
   // Replaces all entries. Keeps the former ones and returns what is wrong if the matrix is not
-  // square, or if it has not one value for each name.
+  // square, has not one value for each name, or has a name twice.
   [[nodiscard]] std::optional<FieldFault> set(const AllowedCollisionMatrix& matrix);
   // Removes the entries of a body.
   void forget(const std::string& name);

@@ -76,6 +76,16 @@ TEST_F(MoveItCell, MalformedMessagesAreRefusedByTheirField) {
   scene.is_diff = scene.robot_state_is_diff = true;
   scene.allowed_collision_matrix.entry_names = {"hand"};
   EXPECT_EQ(refused(scene), "allowed_collision_matrix.entry_values");
+  scene.allowed_collision_matrix = {.entry_names = {"hand", "hand"},
+                                    .entry_values = {{true, true}, {false, false}},
+                                    .default_entry_names = {},
+                                    .default_entry_values = {}};
+  EXPECT_EQ(refused(scene), "allowed_collision_matrix.entry_names");
+  scene.allowed_collision_matrix = {.entry_names = {},
+                                    .entry_values = {},
+                                    .default_entry_names = {"hand", "hand"},
+                                    .default_entry_values = {true, false}};
+  EXPECT_EQ(refused(scene), "allowed_collision_matrix.default_entry_names");
   scene.allowed_collision_matrix = {};
   scene.link_padding = {{"hand", -0.01}};
   EXPECT_EQ(refused(scene), "link_padding[0].padding");
