@@ -17,7 +17,6 @@ Daemon::Partnership::Partnership(const Cell& cell, Participant& participant, Pos
              .start_ns = identity.start_ns,
              .batch = {.samples = PoseReader::samples_a_batch(cell),
                        .joints = PoseReader::joints_a_batch(cell)},
-             .lost_after_ns = leader_lease_ns(std::llround(1e9 / cell.scene.rate_hz)),
              .frames = poses.frames()}),
       port(participant, cell.topics, identity, ticks),
       poses_(poses) {
