@@ -79,7 +79,7 @@ class DaemonMoveIt : public WatchedDaemon {
                    const std::vector<std::byte>& cdr) {
     auto made =
         std::make_unique<ByteWriter>(client, dds.partition, *type.descriptor, "rt/" + topic, cdr);
-    EXPECT_TRUE(made->is_heard());
+    EXPECT_TRUE(made->is_heard() && meets_writers_of(client, *daemon));
     return made;
   }
   Writer writer_of(const CollisionObject& message) {
