@@ -293,6 +293,7 @@ TEST_F(DaemonMoveIt, OfTwoClientsAtOnceIsAllDoneBesideCommands) {
              remove_b = writer_of(operation(Operation::kRemove, "b"));
   CommandingClient planner(client, "planner");
   planner.meet();
+  ASSERT_TRUE(meets_writers_of(client, *daemon)) << daemon->output();
   for (std::size_t i = 0; i < 10; ++i) {
     const Command command = planner.command(
         {AddObject{"{name: c, groups: [moveit], fixed: true, sphere: {radius: 0.1}}"}});
