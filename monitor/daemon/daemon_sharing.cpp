@@ -25,7 +25,7 @@ Daemon::Partnership::Partnership(const Cell& cell, Participant& participant, Pos
 
 void Daemon::share_states() {
   partner_states_ = std::make_unique<PartnerStates>(
-      partner_->port, partner_->ticks, *loop_, *changer_, *scene_thread_, loop_ended_,
+      partner_->port, partner_->ticks, *loop_, *changer_, *scene_thread_, moveit_, loop_ended_,
       recording_.get(), [this](SceneTask task) { return put(std::move(task)); },
       [this] { return revision_.load(); });
 }
@@ -40,16 +40,7 @@ ClientPorts::Actions Daemon::client_actions() {
       .leads = leads()};
   if (!partner_) return actions;
   actions.put = [this](GivenCommand given) {
-    const std::uint64_t identity = given.identity;
-    const bool is_dry = given.command.dry_run;
-    given = partner_states_->for_both(std::move(given));
-    given.is_done = [this, identity] { return moveit_.is_done(identity); };
-    given.answer = [this, identity, is_dry,
-                    answer = std::move(given.answer)](const CommandResult& result) {
-      if (!is_dry) moveit_.ended(identity, result);
-      answer(result);
-    };
-    return put(std::move(given));
+    return put(partner_states_->for_both(std::move(given)));
   };
   actions.commands.takes =
       actions.questions.takes = [this] { return partner_states_->takes_requests(); };
@@ -85,8 +76,14 @@ void Daemon::share_scenes() {
   if (!partner_ && !shares_) return;
   MoveItPort::Sharing sharing{.leads = leads(), .revision = [this] { return revision_.load(); }};
   if (partner_) {
-    sharing.tell = [port = &partner_->port](auto changes, auto bytes) {
-      if (port->leads()) port->send_scene(changes, bytes);
+    // A leader whose lease has ended for a moment tells as well: its partner has to know what led
+    // to its scene, and asks for no lease before it follows.
+    sharing.tell = [partner = partner_.get()](auto changes, auto bytes) {
+      if (partner->ticks.standing() == PartnerStanding::kLeading)
+        partner->port.send_scene(changes, bytes);
+    };
+    sharing.both_have = [this] {
+      return !partner_->port.hears_partner() || partner_->port.partner_revision() == revision_;
     };
   }
   if (shares_) {

@@ -97,8 +97,22 @@ void MoveItPort::ended(std::uint64_t command, const CommandResult& result) {
 
 bool MoveItPort::is_done(std::uint64_t command) {
   if (!sharing_) return false;
-  go_on_from_heard(sharing_->revision());
-  return std::ranges::find(changes_, command, &DoneSceneChange::message) != changes_.end();
+  const std::uint64_t revision = sharing_->revision();
+  go_on_from_heard(revision);
+  return has_message(changes_until(changes_, revision), command);
+}
+
+// What else was done here is not in that cell. It may have another revision here, with other
+// options.
+void MoveItPort::took_over(std::uint64_t revision) {
+  if (!sharing_) return;
+  {
+    const std::lock_guard lock(mutex_);
+    const auto done = changes_until(heard_.changes, revision);
+    changes_.assign(done.begin(), done.end());
+    turns_.go_on_from(changes_);
+  }
+  add({0, sharing_->revision()});
 }
 
 void MoveItPort::hear(const clearance_msg_PartnerScene& scene) {
@@ -122,6 +136,7 @@ void MoveItPort::update_lead() {
       note(0, sharing_->revision());
     }});
   }
+  if (sharing_->both_have && sharing_->both_have()) turns_.forget_done();
   put_waiting();
 }
 
@@ -173,30 +188,38 @@ bool MoveItPort::begins(std::uint64_t identity, std::uint64_t revision) {
 }
 
 // The leader before told of its last change before that was in force. It counts only if it is in
-// force here.
+// force here. If that leader never had the scene in force here, only this daemon knows what led to
+// it, even if an earlier scene was the same.
 void MoveItPort::go_on_from_heard(std::uint64_t revision) {
   const std::lock_guard lock(mutex_);
   if (!std::exchange(heard_.is_new, false)) return;
   static_cast<void>(keeper_.restore(heard_.bytes));
-  const auto last = std::ranges::find(heard_.changes.rbegin(), heard_.changes.rend(), revision,
-                                      &DoneSceneChange::scene_revision);
-  changes_.assign(heard_.changes.begin(), last.base());
+  const auto done = changes_until(heard_.changes, revision);
+  const auto own = changes_until(changes_, revision);
+  const auto last = std::ranges::find_if(own.rbegin(), own.rend(),
+                                         [](const auto& change) { return change.message != 0; });
+  const bool goes_on = last == own.rend() ? !done.empty() : has_message(done, last->message);
+  if (goes_on) changes_.assign(done.begin(), done.end());
 }
 
 void MoveItPort::ended(std::uint64_t identity, std::uint64_t revision) {
   current_ = 0;
   {
     const std::lock_guard lock(mutex_);
-    turns_.end(identity);
+    turns_.end(identity, sharing_->both_have != nullptr);
   }
   note(identity, revision);
 }
 
-void MoveItPort::note(std::uint64_t identity, std::uint64_t revision) {
-  const bool is_known = !changes_.empty() && changes_.back().message == identity &&
-                        changes_.back().scene_revision == revision;
-  if (!is_known) changes_.push_back({identity, revision});
+void MoveItPort::add(const DoneSceneChange& change) {
+  const bool is_known = !changes_.empty() && changes_.back().message == change.message &&
+                        changes_.back().scene_revision == change.scene_revision;
+  if (!is_known) changes_.push_back(change);
   if (changes_.size() > kMostChanges) changes_.erase(changes_.begin());
+}
+
+void MoveItPort::note(std::uint64_t identity, std::uint64_t revision) {
+  add({identity, revision});
   if (!sharing_->tell) return;
   std::vector<std::byte> bytes;
   keeper_.save(bytes);

@@ -30,6 +30,9 @@ class MoveItPort {
     // Tells the partner of the last changes, and of what is kept between messages. Empty: there is
     // no partner.
     std::function<void(std::span<const DoneSceneChange>, std::span<const std::byte>)> tell = {};
+    // The partner has the scene in force here, or is gone: what was done here is not lost any more.
+    // Empty: there is no partner.
+    std::function<bool()> both_have = {};
   };
   explicit MoveItPort(Put put) : put_(std::move(put)) {}
 
@@ -40,12 +43,14 @@ class MoveItPort {
   void take(moveit::RawScene message);
   void close();
 
-  // The next five functions do nothing unless the messages are shared. The scene thread calls the
-  // first three. coming() announces a revision that comes into force, by this command of a client,
-  // or by none (0). ended() follows when the command is answered. is_done() returns whether the
-  // former leader has done the command, and its change is in force here.
+  // The next six functions do nothing unless the messages are shared. The scene thread calls the
+  // first four. coming() announces a revision that comes into force, by this command of a client,
+  // or by none (0). ended() follows when the command is answered. took_over() follows when the
+  // leader's cell, of this revision there, is in force here. is_done() returns whether this daemon
+  // or a former leader has done the command, and its change is in force here.
   void coming(std::uint64_t revision, std::uint64_t command);
   void ended(std::uint64_t command, const CommandResult& result);
+  void took_over(std::uint64_t revision);
   [[nodiscard]] bool is_done(std::uint64_t command);
   // The leading partner tells of this. Any thread but that of the tick.
   void hear(const clearance_msg_PartnerScene& scene);
@@ -73,6 +78,7 @@ class MoveItPort {
   [[nodiscard]] bool begins(std::uint64_t identity, std::uint64_t revision);
   void go_on_from_heard(std::uint64_t revision);
   void ended(std::uint64_t identity, std::uint64_t revision);
+  void add(const DoneSceneChange& change);
   void note(std::uint64_t identity, std::uint64_t revision);
 
   LineLimit refusal_lines_{lines::kMoveItLinesLeftOut}, left_out_lines_{lines::kMoveItLinesLeftOut};
@@ -84,8 +90,9 @@ class MoveItPort {
   bool leads_ = false, keeps_ = false;  // when last looked at; a command to keep files waits
   // For the scene thread.
   moveit::SceneKeeper keeper_;
-  std::vector<DoneSceneChange> changes_;  // the last ones, by whichever daemon led
-  std::uint64_t current_ = 0;             // the message whose changes are being made; 0: none
+  // What led to the scene in force, by whichever daemon led; then what is about to change it.
+  std::vector<DoneSceneChange> changes_;
+  std::uint64_t current_ = 0;  // the message whose changes are being made; 0: none
 };
 
 }  // namespace clearance

@@ -116,6 +116,7 @@ void PartnerStates::take_cell(std::string text, std::uint64_t revision) {
     return Command{.changes = {ReplaceCell{text}}};
   };
   made.answer = [this, revision](const CommandResult& result) {
+    if (result.done()) scenes_.took_over(revision);
     const bool is_taken = result.done() && result.scene_revision == revision;
     if (is_taken || std::exchange(refused_, revision) == revision) return;
     log_line(lines::kPartnerStateRefused,
@@ -150,20 +151,27 @@ void PartnerStates::keep_files(Command command) {
 }
 
 GivenCommand PartnerStates::for_both(GivenCommand given) {
-  given.answer = [this, is_dry = given.command.dry_run,
+  given.turn = [this, identity = given.identity] {
+    if (ticks_.standing() != PartnerStanding::kLeading) return CommandTurn::kOfPartner;
+    return scenes_.is_done(identity) ? CommandTurn::kDone : CommandTurn::kDo;
+  };
+  given.answer = [this, identity = given.identity, is_dry = given.command.dry_run,
                   answer = std::move(given.answer)](const CommandResult& result) {
-    answer(is_dry || !result.done() ? result : of_both(result));
+    if (!is_dry && result.status != CommandStatus::kBusy) scenes_.ended(identity, result);
+    answer(of_both(result, is_dry));
   };
   return given;
 }
 
-// If the partner has taken the lead meanwhile, its cell is that of both, and the change is lost. A
-// daemon that was held up may not have heard of that: it must hold the lease of the leader before a
-// change counts that it alone has. Busy: the client sends the command again.
-CommandResult PartnerStates::of_both(CommandResult result) {
+// If the partner has taken the lead meanwhile, its cell is that of both: the change is lost, and a
+// refusal may be one of what the partner has done already. A daemon that was held up may not have
+// heard of that: it must hold the lease of the leader before a result counts that it alone has.
+// Busy: the client sends the command again.
+CommandResult PartnerStates::of_both(CommandResult result, bool is_dry) {
+  const bool is_to_agree = result.done() && !is_dry;
   const auto end = std::chrono::steady_clock::now() + kPatience;
-  while (!loop_ended_) {
-    const bool hears = port_.hears_partner();
+  while (!loop_ended_ && result.status != CommandStatus::kBusy) {
+    const bool hears = is_to_agree && port_.hears_partner();
     if (hears && port_.partner_revision() == result.scene_revision) break;
     if (!hears && port_.leads()) break;
     const bool is_late = std::chrono::steady_clock::now() > end;

@@ -13,6 +13,7 @@
 #include <utility>
 
 #include "config/cell/cell.hpp"
+#include "monitor/daemon/moveit_port.hpp"
 #include "monitor/daemon/recording.hpp"
 #include "monitor/dds/partner_port.hpp"
 #include "monitor/loop/tick_loop.hpp"
@@ -28,13 +29,14 @@ class PartnerStates {
   // `recording` gets the states that the loop goes on from; null: there is none.
   using Put = std::function<bool(SceneTask)>;
   PartnerStates(PartnerPort& port, TickPartner& ticks, TickLoop& loop, SceneChanger& changer,
-                SceneThread& thread, const std::atomic<bool>& loop_ended, Recording* recording,
-                Put put_command, std::function<std::uint64_t()> revision)
+                SceneThread& thread, MoveItPort& scenes, const std::atomic<bool>& loop_ended,
+                Recording* recording, Put put_command, std::function<std::uint64_t()> revision)
       : port_(port),
         ticks_(ticks),
         loop_(loop),
         changer_(changer),
         thread_(thread),
+        scenes_(scenes),
         loop_ended_(loop_ended),
         recording_(recording),
         put_command_(std::move(put_command)),
@@ -48,7 +50,8 @@ class PartnerStates {
   [[nodiscard]] bool takes_requests() const;
   // Keeps the files of a command that the partner takes.
   void keep_files(Command command);
-  // The command of a client. Its answer waits until the partner has the changed cell, too.
+  // The command of a client. It is done only if it was not done before, and answered only while
+  // this daemon leads. If it has changed the cell, the answer waits until the partner has it, too.
   [[nodiscard]] GivenCommand for_both(GivenCommand given);
 
  private:
@@ -57,13 +60,14 @@ class PartnerStates {
   void send();
   void join(const PartnerStateView& state);
   void take_cell(std::string text, std::uint64_t revision);
-  [[nodiscard]] CommandResult of_both(CommandResult result);
+  [[nodiscard]] CommandResult of_both(CommandResult result, bool is_dry);
 
   PartnerPort& port_;
   TickPartner& ticks_;
   TickLoop& loop_;
   SceneChanger& changer_;
   SceneThread& thread_;
+  MoveItPort& scenes_;  // knows which commands led to the scene in force
   const std::atomic<bool>& loop_ended_;
   Recording* const recording_;
   const Put put_command_;

@@ -17,6 +17,11 @@ namespace clearance {
 // A change of the leader's scene: `message` is a RawScene::identity().
 using DoneSceneChange = clearance_msg_SceneChange;
 
+// The changes up to the last one that led to a scene of this revision. None: no change did.
+[[nodiscard]] std::span<const DoneSceneChange> changes_until(
+    std::span<const DoneSceneChange> changes, std::uint64_t revision);
+[[nodiscard]] bool has_message(std::span<const DoneSceneChange> changes, std::uint64_t message);
+
 // To be used by one thread at a time.
 class SceneTurns {
  public:
@@ -37,21 +42,29 @@ class SceneTurns {
   // The messages whose files are to be kept, each once.
   [[nodiscard]] std::vector<Message> to_keep();
   [[nodiscard]] bool has_to_keep() const noexcept;
-  // The message is done, or refused.
-  void end(std::uint64_t identity);
+  // The message is done, or refused. It may be wanted again: see go_on_from().
+  void end(std::uint64_t identity, bool may_be_wanted = false);
+  // Another leader's cell is in force here, and these changes led to it. What was done here and is
+  // not among them is lost with the cell before, and is to be done.
+  void go_on_from(std::span<const DoneSceneChange> changes);
+  // What was done here cannot be lost any more.
+  void forget_done();
   // Drops what another leader has done, if the scene in force is of this revision: its messages up
   // to the last change that led to it, and what came before those here.
   void drop_done(std::span<const DoneSceneChange> changes, std::uint64_t revision);
 
-  [[nodiscard]] std::size_t waiting() const noexcept { return turns_.size(); }
+  [[nodiscard]] std::size_t waiting() const noexcept;
 
  private:
   struct Turn {
     Message message;
     std::uint64_t identity = 0;
-    bool is_queued = false, is_kept = false;
+    bool is_queued = false, is_kept = false, is_done = false;
   };
-  [[nodiscard]] Turn* find(std::uint64_t identity) noexcept;
+  [[nodiscard]] Turn* find(std::uint64_t identity) noexcept;  // not among those that are done
+  void drop_first();
+  template <class Of>
+  void erase_if(const Of& of);
 
   std::deque<Turn> turns_;  // in the order in which they came
   std::size_t bytes_ = 0;

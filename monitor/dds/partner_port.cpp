@@ -259,17 +259,26 @@ bool PartnerPort::hears_leader() const {
          ticks_.standing() != PartnerStanding::kLeading;
 }
 
-// Whatever changed the leader's cell, and whenever this daemon came: it has that cell, too.
+// Whatever changed the leader's cell, and whenever this daemon came: it has that cell, too. It
+// takes a cell only with what led to it: a command that is in it is not to be done again.
 void PartnerPort::look_for_cell() {
   const std::int64_t now = SystemClock().monotonic_ns();
   if (!hears_leader() || !actions_.take_cell) return;
   const clearance_msg_Catalogue& its = *catalogue_;
   if (its.daemon != leader_ || its.scene_revision != leader_revision_) return;
-  if (its.scene_revision == actions_.revision()) return;
+  if (its.scene_revision == actions_.revision() || !is_told(its.scene_revision)) return;
   if (its.scene_revision == offered_ && now - offered_ns_ < kAskAgainNs) return;
   offered_ = its.scene_revision;
   offered_ns_ = now;
   actions_.take_cell(its.cell_yaml, offered_);
+}
+
+// The leader has told what led to its scene of this revision.
+bool PartnerPort::is_told(std::uint64_t revision) const {
+  const std::span changes(scene_->changes._buffer, scene_->changes._length);
+  return scene_->daemon == leader_ && !is_scene_new_ &&
+         std::ranges::find(changes, revision, &clearance_msg_SceneChange::scene_revision) !=
+             changes.end();
 }
 
 void PartnerPort::poll() {

@@ -86,9 +86,9 @@ class PartnerPort {
   [[nodiscard]] bool leads() const;
   void published(const clearance_msg_Distances& report) { reports_.note_own(report); }
   void fill(clearance_msg_PartnerHealth& out);
-  // The partner has published in the last tenth of a second; it was heard once, and its reports do
+  // The partner has published in the last half of a second; it was heard once, and its reports do
   // not agree with those of this daemon; its name, and the revision of its last report.
-  [[nodiscard]] bool hears_partner() { return reports_.hears_any(); }
+  [[nodiscard]] bool hears_partner() { return reports_.hears_any(PartnerReports::kGoneAfterNs); }
   [[nodiscard]] bool disagrees() { return reports_.disagrees(); }
   [[nodiscard]] std::string partner() { return reports_.name(); }
   [[nodiscard]] std::uint64_t partner_revision() const noexcept { return partner_revision_; }
@@ -103,6 +103,7 @@ class PartnerPort {
   void hear_catalogues();
   void hear_scenes();
   void look_for_cell();
+  [[nodiscard]] bool is_told(std::uint64_t revision) const;
   void poll();
   [[nodiscard]] bool hears_leader() const;
   static void write(dds_entity_t writer, const void* sample, const char* what);

@@ -12,8 +12,6 @@ namespace {
 constexpr std::int64_t kTellAgainNs = 1'000'000'000;
 // A partner's report of a cycle is missing when this daemon publishes the second one after it.
 constexpr std::uint64_t kLateBy = 2;
-// A partner that was not heard for this time is known to be gone.
-constexpr std::int64_t kGoneAfterNs = 100'000'000;
 
 template <std::size_t N>
 void copy_name(const std::string& from, char (&to)[N]) {
@@ -86,16 +84,16 @@ void PartnerReports::note_corrupt(const clearance_msg_Distances& report) {
 void PartnerReports::look_for_missing(std::uint64_t cycle) {
   if (heard_ns_ == 0 || other_[cycle % kKept].cycle == cycle) return;
   if (own_[cycle % kKept].cycle != cycle) return;
-  const bool is_gone = SystemClock().monotonic_ns() - heard_ns_ > kGoneAfterNs;
+  const bool is_gone = SystemClock().monotonic_ns() - heard_ns_ > kLateAfterNs;
   if (is_gone && agrees_from_ == 0) return;
   ++missing_;
   if (agrees_from_ != 0 && may_tell(kMissing)) log_line(lines::kPartnerMissing, name_, cycle);
   agrees_from_ = is_gone ? 0 : agrees_from_;
 }
 
-bool PartnerReports::hears_any() {
+bool PartnerReports::hears_any(std::int64_t within_ns) {
   const std::lock_guard lock(mutex_);
-  return heard_ns_ != 0 && SystemClock().monotonic_ns() - heard_ns_ < kGoneAfterNs;
+  return heard_ns_ != 0 && SystemClock().monotonic_ns() - heard_ns_ < within_ns;
 }
 
 bool PartnerReports::disagrees() {
@@ -111,7 +109,7 @@ std::string PartnerReports::name() {
 bool PartnerReports::hears_another(const std::string& partner) {
   const std::lock_guard lock(mutex_);
   return heard_ns_ != 0 && name_ != partner &&
-         SystemClock().monotonic_ns() - heard_ns_ < kGoneAfterNs;
+         SystemClock().monotonic_ns() - heard_ns_ < kLateAfterNs;
 }
 
 void PartnerReports::fill(clearance_msg_PartnerHealth& out) {

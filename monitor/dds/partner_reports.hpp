@@ -20,8 +20,11 @@ class PartnerReports {
   // Notes a report of the partner that does not have the checksum that it states. It counts as
   // different.
   void note_corrupt(const clearance_msg_Distances& report);
-  // The partner has published in the last tenth of a second.
-  [[nodiscard]] bool hears_any();
+  // The partner has published within this time. One that was not heard for a tenth of a second is
+  // late or gone. Only one that was not heard for half a second counts as gone for what it then
+  // does not have.
+  static constexpr std::int64_t kLateAfterNs = 100'000'000, kGoneAfterNs = 500'000'000;
+  [[nodiscard]] bool hears_any(std::int64_t within_ns = kLateAfterNs);
   // True: the partner has published once, and since then the two have not agreed, or do so no
   // longer.
   [[nodiscard]] bool disagrees();

@@ -27,6 +27,7 @@ constexpr std::int64_t kMostLateNs = 2'500'000;
 
 }  // namespace
 
+// One notice that is a little late is no sign that the leader is gone.
 TickPartner::TickPartner(PoseSource& source, Clock& clock, const TickPartnerOptions& options)
     : clock_(clock),
       options_(options),
@@ -37,6 +38,7 @@ TickPartner::TickPartner(PoseSource& source, Clock& clock, const TickPartnerOpti
       heard_(kWaiting),
       notices_(kWaiting),
       tags_(kWaiting) {
+  options_.lost_after_ns = std::max(options_.lost_after_ns, 2 * options_.period_ns);
   lineage_ = fresh();
 }
 
@@ -333,12 +335,6 @@ std::int64_t TickPartner::part(std::int64_t deadline) noexcept {
   begin_lineage(fresh(), 0);
   stand(PartnerStanding::kApart);
   return tick_apart(deadline);
-}
-
-// A leader that stalls for a moment keeps its lead over a daemon that counts lower: clients would
-// see cycles again.
-std::int64_t TickPartner::lost_after() const noexcept {
-  return is_silent_ ? 5 * options_.lost_after_ns : options_.lost_after_ns;
 }
 
 // In phase with the leader, so that both are again when one has the state of the other.

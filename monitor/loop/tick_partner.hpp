@@ -28,8 +28,8 @@ struct TickPartnerOptions {
   BatchStore::Size batch;
   // A daemon that hears no partner for this time after its start has none.
   std::int64_t alone_after_ns = 1'000'000'000;
-  // A leader that was heard no more for this time is gone, for a daemon that does not follow it. It
-  // is five times as long for one that publishes nothing.
+  // A leader that was heard no more for this time, and for two periods at least, is gone for a
+  // daemon that does not follow it. It is five times as long for one that publishes nothing.
   std::int64_t lost_after_ns = 20'000'000;
   FrameExchange* frames = nullptr;  // of sensors; null: there are none
   // A leader is shown a frame that the partner has not built after this time.
@@ -102,7 +102,11 @@ class TickPartner final : public PoseSource, public TickPace {
   [[nodiscard]] bool is_possible(const TickNotice& notice) noexcept;
   // The lead of the leader's time over this daemon's own, at that tick.
   [[nodiscard]] std::int64_t ahead_of_own(const TickNotice& notice) noexcept;
-  [[nodiscard]] std::int64_t lost_after() const noexcept;
+  // A leader that stalls for a moment keeps its lead over a daemon that counts lower: clients would
+  // see cycles again.
+  [[nodiscard]] std::int64_t lost_after() const noexcept {
+    return is_silent_ ? 5 * options_.lost_after_ns : options_.lost_after_ns;
+  }
   void hear_out(std::int64_t late_ns) noexcept;
   void yield() noexcept;
   [[nodiscard]] const TickNotice* known(std::uint64_t cycle) const noexcept;

@@ -25,15 +25,20 @@ using AskPose = std::function<std::optional<Pose>(const std::string& name)>;
 // Gets the result of a task, in the scene thread. May be empty.
 using AnswerCommand = std::function<void(const CommandResult&)>;
 
+// What becomes of a client's command when its turn comes.
+enum class CommandTurn : std::uint8_t {
+  kDo,
+  kDone,       // it was done before, and its change is in force here: it is only answered
+  kOfPartner,  // this daemon leads no more: the client is to send it again
+};
+
 struct GivenCommand {
   Command command = {};
   // The daemon's own: `client` is not checked, and files may lie anywhere.
   bool is_own = false;
   AnswerCommand answer = {};
   std::uint64_t identity = 0;  // the hash of the client's message; 0: the command came in none
-  // Is called when the command's turn comes. Returns true if the former leader has done the command
-  // and its change is in force here: the command is then only answered. May be empty.
-  std::function<bool()> is_done = {};
+  std::function<CommandTurn()> turn = {};  // is called when its turn comes; empty: it is to be done
 };
 
 // A command of the daemon's own that depends on the cell in force when its turn comes.

@@ -130,8 +130,19 @@ std::optional<CommandResult> SceneThread::execute(const Command& command, bool i
 
 std::optional<CommandResult> SceneThread::result_of(const GivenCommand& given) {
   const Command& command = given.command;
-  if (given.is_done && given.is_done())
-    return execute({.client = command.client, .request = command.request}, given.is_own, {});
+  switch (given.turn ? given.turn() : CommandTurn::kDo) {
+    case CommandTurn::kDo:
+      break;
+    case CommandTurn::kDone:
+      return execute({.client = command.client, .request = command.request}, given.is_own, {});
+    case CommandTurn::kOfPartner:
+      return CommandResult{.client = command.client,
+                           .request = command.request,
+                           .status = CommandStatus::kBusy,
+                           .reason =
+                               "found that the partner leads; expected that the same command "
+                               "is sent again"};
+  }
   in_hand_ = given.identity;
   std::optional<CommandResult> result = execute(command, given.is_own, {});
   in_hand_ = 0;

@@ -40,11 +40,13 @@ class DaemonCommands : public testing::Test {
   void start(const std::vector<std::string>& more = {}) {
     daemon.emplace(kDaemon, with(with({cell.path()}, dds_arguments(dds)), more));
     distances.settle();
+    ASSERT_TRUE(meets_writers_of(participant, *daemon)) << daemon->output();
     robot.send(0.0);
   }
   std::unique_ptr<CommandingClient> client(const std::string& name) {
     auto made = std::make_unique<CommandingClient>(participant, name);
     made->meet();
+    EXPECT_TRUE(meets_writers_of(participant, *daemon)) << daemon->output();
     return made;
   }
   // The first report of this cycle or a later one.
@@ -278,7 +280,7 @@ TEST_F(DaemonCommands, ThatAreCutOffAreCountedAndTheNextOneIsDone) {
   for (const std::size_t size : {std::size_t{16}, whole.size() / 2, whole.size() - 8}) {
     ByteWriter cut(participant, dds.partition, clearance_msg_Command_desc, Topics{}.commands,
                    {whole.begin(), whole.begin() + static_cast<long>(size)});
-    ASSERT_TRUE(cut.is_heard());
+    ASSERT_TRUE(cut.is_heard() && meets_writers_of(participant, *daemon));
     cut.send();
     ++sent;
     EXPECT_TRUE(eventually([&] {

@@ -79,7 +79,7 @@ class DaemonMoveIt : public WatchedDaemon {
                    const std::vector<std::byte>& cdr) {
     auto made =
         std::make_unique<ByteWriter>(client, dds.partition, *type.descriptor, "rt/" + topic, cdr);
-    EXPECT_TRUE(made->is_heard());
+    EXPECT_TRUE(made->is_heard() && meets_writers_of(client, *daemon));
     return made;
   }
   Writer writer_of(const CollisionObject& message) {
@@ -293,6 +293,7 @@ TEST_F(DaemonMoveIt, OfTwoClientsAtOnceIsAllDoneBesideCommands) {
              remove_b = writer_of(operation(Operation::kRemove, "b"));
   CommandingClient planner(client, "planner");
   planner.meet();
+  ASSERT_TRUE(meets_writers_of(client, *daemon)) << daemon->output();
   for (std::size_t i = 0; i < 10; ++i) {
     const Command command = planner.command(
         {AddObject{"{name: c, groups: [moveit], fixed: true, sphere: {radius: 0.1}}"}});

@@ -80,8 +80,8 @@ TEST_F(DaemonOutput, LosesTheLogOfNoMomentInWhichItIsRead) {
   ASSERT_TRUE(eventually([&] { return matched_readers(flood.writer()) == 1; }));
   std::string log = pipe.read(100);
   EXPECT_THAT(log, HasSubstr("[started]"));
-  flood.send("late");
   EXPECT_TRUE(eventually([&] {
+    flood.send("late");
     log += pipe.read(10);
     return log.find("poses from source 'late'") != std::string::npos;
   })) << log;

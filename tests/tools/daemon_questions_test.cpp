@@ -316,7 +316,7 @@ TEST_F(DaemonQuestions, ThatAreCutOffAreCountedAndTheNextOneIsAnswered) {
   for (const std::size_t size : {std::size_t{16}, whole.size() / 2, whole.size() - 8}) {
     ByteWriter cut(participant, dds.partition, clearance_msg_Question_desc, Topics{}.questions,
                    {whole.begin(), whole.begin() + static_cast<long>(size)});
-    ASSERT_TRUE(cut.is_heard());
+    ASSERT_TRUE(cut.is_heard() && meets_writers_of(participant, *daemon));
     cut.send();
     ++sent;
     EXPECT_TRUE(eventually([&] {

@@ -96,6 +96,7 @@ void expect_daemon_agrees_with_offline_run(const std::string& cell, std::size_t 
     return test::matched_readers(poses.writer()) == 1 &&
            test::matched_writers(distances.reader()) == 1;
   })) << daemon.output();
+  ASSERT_TRUE(test::meets_writers_of(client, daemon)) << daemon.output();
   distances.settle();
   const Reports reports = run_in_step(poses, distances, batches);
   ASSERT_FALSE(reports.empty()) << daemon.output();
@@ -194,6 +195,7 @@ TEST(Daemon, DoesNotHearAnotherDaemonsCell) {
            test::matched_writers(distances_a.reader()) == 1 &&
            test::matched_writers(distances_b.reader()) == 1;
   }));
+  ASSERT_TRUE(test::meets_writers_of(client_a, daemon_a)) << daemon_a.output();
   const Reports reports_a = run_in_step(poses_a, distances_a, 20);
   ASSERT_FALSE(reports_a.empty());
   for (const auto& report : reports_a) EXPECT_EQ((*report)->scene_revision, read_a.scene.revision);
@@ -217,6 +219,7 @@ TEST(Daemon, IsNotHeldUpByAClientThatStopped) {
   ASSERT_TRUE(eventually([&] { return stopped.wrote("cycle "); })) << stopped.output();
   stopped.signal(SIGSTOP);
   ASSERT_TRUE(eventually([&] { return test::matched_readers(poses.writer()) == 1; }));
+  ASSERT_TRUE(test::meets_writers_of(client, daemon)) << daemon.output();
   distances.settle();
   // More reports than any buffer between the daemon and the stopped client can hold.
   const Reports reports = run_in_step(poses, distances, 300);

@@ -93,6 +93,7 @@ TEST_F(InterventionsOfADaemon, AreItsStartSourcesChangesOfTheSceneAndEnd) {
   CommandingClient planner(participant, "planner"), stranger(participant, "stranger");
   planner.meet();
   stranger.meet();
+  ASSERT_TRUE(meets_writers_of(participant, *daemon)) << daemon->output();
   const CellChange wall = AddObject{
       "{name: wall, fixed: true, groups: [still], pose: {xyz: [0, 5, 0]}, box: {size: "
       "[9, 1, 9]}}"};

@@ -45,6 +45,8 @@ class MoveItPartners : public Partners {
                                              moveit::cdr_of(message));
     EXPECT_TRUE(read_until([&] { return matched_readers(made->writer()) == daemons.size(); }))
         << logs();
+    for (const auto& [name, daemon] : daemons)
+      EXPECT_TRUE(meets_writers_of(sender, *daemon)) << name << logs();
     return made;
   }
   // One more sphere of the object, far from everything that moves. Done twice, it would be there

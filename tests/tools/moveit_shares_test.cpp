@@ -67,6 +67,8 @@ class MoveItSharedCells : public SharedCells {
                                              moveit::cdr_of(message));
     EXPECT_TRUE(eventually([&] { return matched_readers(made->writer()) == daemons.size(); }))
         << logs();
+    for (const auto& [name, daemon] : daemons)
+      EXPECT_TRUE(meets_writers_of(sender, *daemon)) << name << logs();
     return made;
   }
   Writer writer_of(const CollisionObject& message) {

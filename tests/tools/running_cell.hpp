@@ -152,6 +152,24 @@ class Poses {
   Sample<clearance_msg_PoseBatch> sample_;
 };
 
+// Waits until the daemon has met all writers that this participant has made. A writer knows only
+// that it has met the daemon's reader: what it sends before that reader has met it, too, is lost. A
+// daemon meets the writers of a participant in their order, and logs those of poses.
+[[nodiscard]] inline bool meets_writers_of(Participant& participant, const ChildProcess& daemon) {
+  const std::string topic = Topics{}.poses, line = "a writer of " + topic + " appeared";
+  const auto appeared = [&] {
+    const std::string log = daemon.output();
+    std::size_t count = 0;
+    for (auto at = log.find(line); at != std::string::npos; at = log.find(line, at + 1)) ++count;
+    return count;
+  };
+  const std::size_t before = appeared();
+  const dds_entity_t last = participant.writer(TopicKind::kPoses, topic);
+  const bool is_met = eventually([&] { return appeared() > before; });
+  dds_delete(last);
+  return is_met;
+}
+
 // Reads distances as any client does.
 class Distances {
  public:

@@ -45,6 +45,7 @@ TEST(Watch, SaysThatNobodyKnowsHowFastThingsCloseYet) {
   ChildProcess daemon(kDaemon, with({cell.path()}, dds_arguments(dds)));
   ChildProcess watch(kWatch, with({"--plain"}, dds_arguments(dds)));
   ASSERT_TRUE(eventually([&] { return matched_readers(poses.writer()) == 1; }));
+  ASSERT_TRUE(meets_writers_of(client, daemon)) << daemon.output();
   poses.send(0.0, false);
   ASSERT_TRUE(eventually([&] { return watch.wrote("closing at an unknown speed"); }))
       << watch.output();

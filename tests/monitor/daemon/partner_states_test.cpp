@@ -124,11 +124,13 @@ class PartnerStatesTest : public testing::Test, private CellParts {
   std::atomic<bool> stop{false}, loop_ended{false};
   SceneChanger changer{loop, std::exchange(first, nullptr), static_cast<CellParts&>(*this)};
   SceneThread thread{changer, loop, loop_ended, {}};
+  MoveItPort scenes{[this](SceneTask task) { return thread.put(std::move(task)); }};
   PartnerStates states{port,
                        ticks,
                        loop,
                        changer,
                        thread,
+                       scenes,
                        loop_ended,
                        nullptr,
                        [this](SceneTask task) { return thread.put(std::move(task)); },
@@ -170,6 +172,27 @@ TEST_F(PartnerStatesTest, AStateThatComesAfterTheCellHasChangedAndBackIsRefusedA
   prepare();
   take_state(copy);
   EXPECT_TRUE(joins());
+}
+
+// A command was taken while this daemon led, and its turn comes now. It may be one that the leader
+// has done already, so a refusal by this daemon's cell means nothing.
+TEST_F(PartnerStatesTest, ACommandWhoseTurnComesWhileTheOtherOneLeadsIsSentBackAndNotDone) {
+  hear_leader(copy.revision);
+  ASSERT_TRUE(test::eventually([&] { return ticks.wants_state(); }));
+  const std::vector<CellChange> lists[] = {{SetMargin{"table", 0.01}}, {Detach{"table"}}};
+  for (const auto& list : lists) {
+    for (const bool is_dry : {false, true}) {
+      CommandResult result;
+      ASSERT_TRUE(thread.put(states.for_both(
+          {.command = {.client = "planner", .request = 5, .dry_run = is_dry, .changes = list},
+           .answer = [&](const CommandResult& of) { result = of; }})));
+      finish();
+      EXPECT_EQ(result.status, CommandStatus::kBusy) << result.reason;
+      EXPECT_EQ(result.client, "planner");
+      EXPECT_EQ(result.request, 5u);
+      EXPECT_EQ(changer.cell().scene.revision, copy.revision);
+    }
+  }
 }
 
 }  // namespace

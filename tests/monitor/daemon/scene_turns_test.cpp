@@ -80,6 +80,39 @@ TEST_F(SceneTurnsTest, ThatCameBeforeADoneOneAreNotDoneLater) {
   EXPECT_THAT(to_queue(), ElementsAre(3)) << "the leader did not hear the first one";
 }
 
+// Done here, and then another leader's cell came in force.
+TEST_F(SceneTurnsTest, ThatWereLostWithTheCellBeforeAreDoneAgainInTheirOrder) {
+  for (const std::uint64_t number : {1, 2, 3}) add(number);
+  EXPECT_THAT(to_queue(), ElementsAre(1, 2, 3));
+  for (const std::uint64_t number : {1, 2}) turns.end(number, true);
+  EXPECT_TRUE(turns.begins(3));
+  EXPECT_EQ(turns.waiting(), 1u);
+  turns.go_on_from(std::vector<DoneSceneChange>{{1, 10}});
+  EXPECT_FALSE(turns.begins(3)) << "the second one comes before it";
+  EXPECT_THAT(to_queue(), ElementsAre(2, 3));
+  turns.end(2, true);
+  turns.forget_done();
+  turns.go_on_from({});
+  EXPECT_EQ(turns.waiting(), 1u) << "the second one was known to both";
+}
+
+TEST_F(SceneTurnsTest, ThatAreDoneGoFirstWhereTooManyWaitAndAreNotLost) {
+  for (std::uint64_t number = 1; number <= SceneTurns::kMost; ++number) add(number);
+  turns.end(1, true);
+  EXPECT_EQ(turns.add(std::make_shared<const moveit::RawScene>(), 1000), 0u);
+  EXPECT_EQ(turns.add(std::make_shared<const moveit::RawScene>(), 1001), 1u);
+}
+
+// Two messages of one content have one identity.
+TEST_F(SceneTurnsTest, ThatAreAlikeAreEachDone) {
+  for (int i = 0; i < 2; ++i) add(7);
+  for (int i = 0; i < 2; ++i) {
+    EXPECT_TRUE(turns.begins(7));
+    turns.end(7, true);
+  }
+  EXPECT_EQ(turns.waiting(), 0u);
+}
+
 TEST_F(SceneTurnsTest, TheOldestGoWhereTooManyWait) {
   for (std::uint64_t number = 1; number <= SceneTurns::kMost + 2; ++number) add(number);
   EXPECT_EQ(turns.waiting(), SceneTurns::kMost);

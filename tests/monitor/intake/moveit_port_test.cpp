@@ -116,7 +116,8 @@ class SharedMoveItPort : public MoveItPortTest {
                      [this](auto done, auto) {
                        const std::lock_guard lock(mutex_);
                        told_.assign(done.begin(), done.end());
-                     }});
+                     },
+                 .both_have = [this] { return both_have.load(); }});
     in_force = revision();
   }
   // The partner leads, and has done this message, after which that revision is in force.
@@ -124,10 +125,13 @@ class SharedMoveItPort : public MoveItPortTest {
     hear(message.identity(), revision);
   }
   void hear(std::uint64_t message, std::uint64_t revision) {
+    hear(std::vector<DoneSceneChange>{{message, revision}});
+  }
+  void hear(const std::vector<DoneSceneChange>& done) {
     Sample<clearance_msg_PartnerScene> sample;
-    reserve_sequence(sample->changes, 1);
-    sample->changes._buffer[0] = {message, revision};
-    sample->changes._length = 1;
+    reserve_sequence(sample->changes, done.size());
+    std::ranges::copy(done, sample->changes._buffer);
+    sample->changes._length = static_cast<std::uint32_t>(done.size());
     std::vector<std::byte> bytes;
     moveit::SceneKeeper().save(bytes);
     reserve_sequence(sample->bytes, bytes.size());
@@ -143,6 +147,26 @@ class SharedMoveItPort : public MoveItPortTest {
       done.set_value();
     }}));
     done.get_future().get();
+  }
+  // This daemon puts a command in force, which leads to that revision.
+  void make(std::uint64_t command, std::uint64_t revision) {
+    in_scene_thread([&] {
+      port_.coming(revision, command);
+      in_force = revision;
+      port_.ended(command, CommandResult{});
+    });
+  }
+  // This daemon puts the leader's cell of that revision in force.
+  void take_over(std::uint64_t revision) {
+    in_scene_thread([&] {
+      port_.coming(revision, 0);
+      in_force = revision;
+      port_.took_over(revision);
+    });
+  }
+  void lead(bool is) {
+    leads = is;
+    finish();
   }
   // Until the scene thread has done what waits.
   void finish() {
@@ -161,7 +185,7 @@ class SharedMoveItPort : public MoveItPortTest {
     return std::ranges::find(told_, message.identity(), &DoneSceneChange::message) != told_.end();
   }
 
-  std::atomic<bool> leads{false};
+  std::atomic<bool> leads{false}, both_have{false};
   std::atomic<std::uint64_t> in_force{0};
 
  private:
@@ -219,9 +243,100 @@ TEST_F(SharedMoveItPort, ACommandThatWasRefusedAfterItWasToldOfIsNotDone) {
   leads = true;
   finish();
   in_scene_thread([this] { port_.coming(revision() + 1, 7); });
-  EXPECT_TRUE(is_done(7));
+  EXPECT_FALSE(is_done(7)) << "it is not in force yet";
   in_scene_thread([this] { port_.ended(7, {.status = CommandStatus::kTooSlow}); });
+  in_force = revision() + 1;
+  EXPECT_FALSE(is_done(7)) << "another change led to the same scene";
+}
+
+// Lists of what was done, and the scenes to which it led, after which daemon led how.
+TEST_F(SharedMoveItPort, ACommandThatIsInForceHereIsDoneThoughTheOtherOneLedWithoutIt) {
+  const std::uint64_t first = revision();
+  lead(true);
+  make(7, first + 1);
+  lead(false);
+  hear({{6, first}, {0, first}});
+  lead(true);
+  EXPECT_TRUE(is_done(7)) << "its change is in the scene in force";
+  lead(false);
+  hear({{5, first + 1}, {6, first}, {0, first}});
+  lead(true);
+  EXPECT_TRUE(is_done(7)) << "an earlier scene was the same";
+}
+
+TEST_F(SharedMoveItPort, ACommandIsNotDoneOnceTheOtherOnesCellHasTakenItBack) {
+  const std::uint64_t first = revision();
+  lead(true);
+  make(7, first + 1);
+  lead(false);
+  hear({{6, first}, {0, first}});
+  lead(true);
+  lead(false);
+  take_over(first);
+  lead(true);
+  EXPECT_TRUE(is_done(6));
   EXPECT_FALSE(is_done(7));
+}
+
+TEST_F(SharedMoveItPort, ACommandIsDoneWithTheLeadersCellThoughThisOneLedForAMomentBefore) {
+  const std::uint64_t first = revision();
+  hear({{6, first}, {7, first + 1}});
+  lead(true);
+  EXPECT_FALSE(is_done(7));
+  lead(false);
+  take_over(first + 1);
+  lead(true);
+  EXPECT_TRUE(is_done(6));
+  EXPECT_TRUE(is_done(7));
+}
+
+// A cell of which nothing was told, and one that has another revision here, with other options.
+TEST_F(SharedMoveItPort, OnlyWhatLedToTheCellThatWasTakenOverIsDone) {
+  const std::uint64_t first = revision();
+  lead(true);
+  make(7, first + 1);
+  lead(false);
+  take_over(first + 2);
+  lead(true);
+  EXPECT_FALSE(is_done(7));
+  lead(false);
+  hear({{8, first + 3}, {9, first + 4}});
+  in_scene_thread([&] {
+    in_force = first + 5;
+    port_.took_over(first + 3);
+  });
+  lead(true);
+  EXPECT_TRUE(is_done(8));
+  EXPECT_FALSE(is_done(9));
+}
+
+// This daemon did the message while it led, and then the other one led without it.
+TEST_F(SharedMoveItPort, AMessageThatWasLostWithTheCellBeforeIsDoneAgain) {
+  const std::uint64_t first = revision();
+  lead(true);
+  port_.take(sphere("a", "world"));
+  finish();
+  ASSERT_NE(object("a"), nullptr);
+  const auto take_back = [&] {
+    lead(false);
+    hear({{0, first}});
+    std::promise<CommandResult> undone;
+    ASSERT_TRUE(thread_->put(MadeCommand{
+        .sender = "partner",
+        .make = [&](auto&, auto&) { return Command{.changes = {ReplaceCell{cell->yaml}}}; },
+        .answer = [&](const CommandResult& result) { undone.set_value(result); }}));
+    ASSERT_TRUE(undone.get_future().get().done());
+    take_over(first);
+    ASSERT_EQ(object("a"), nullptr);
+    lead(true);
+  };
+  take_back();
+  EXPECT_NE(object("a"), nullptr);
+  both_have = true;
+  finish();
+  both_have = false;
+  take_back();
+  EXPECT_EQ(object("a"), nullptr) << "the other one had it, and has removed it since";
 }
 
 TEST_F(SharedMoveItPort, AMessageThatWasQueuedIsNotDoneOnceTheOtherOneLeads) {

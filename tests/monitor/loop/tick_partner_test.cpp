@@ -161,32 +161,6 @@ TEST_F(TickPartners, ALateTickOfTheLeaderDoesNotSetTheTimeOfItsSuccessorAhead) {
   EXPECT_LT(std::abs(ahead(right) - before), kTick);
 }
 
-// At 50 Hz half a period is 10 ms, as late as a successor's first tick. Poses that come until then
-// would be refused if their stamps were 5 ms ahead of the told time.
-TEST(TickPartnersOfASlowCell, ALateTickIsToldATimeThatPutsNoInputFarIntoTheFuture) {
-  constexpr std::int64_t kPeriod = 20 * kTick;
-  test::TurnedClock clock;
-  test::ListedPoses poses;
-  TickPartner ticks(
-      poses, clock,
-      {.period_ns = kPeriod, .daemon = 1, .batch = {.samples = 16}, .alone_after_ns = kPeriod});
-  std::int64_t deadline = clock.monotonic_ns();
-  std::uint64_t cycle = 0;
-  // Returns what the told time is behind the clock.
-  const auto tick = [&](std::int64_t late_ns) {
-    deadline += kPeriod;
-    clock.sleep_until(deadline + late_ns);
-    static_cast<void>(ticks.decide(deadline, ++cycle, 0));
-    return clock.realtime_ns() - ticks.time().now_ns;
-  };
-  for (int i = 0; i < 5; ++i) tick(-ticks.ahead_ns());
-  ASSERT_EQ(ticks.standing(), kLeading);
-  const std::int64_t on_time = tick(-ticks.ahead_ns());
-  EXPECT_LE(tick(9 * kTick) - on_time, 5 * kTick / 2);
-  EXPECT_LE(std::abs(tick(-ticks.ahead_ns()) - on_time), kTick / 10) << "as before";
-  EXPECT_LE(std::abs(tick(kTick) - on_time - kTick), kTick / 10) << "told when it was due";
-}
-
 // The time of the former leader was 50 us ahead. Ages follow the clock that leads now, and change
 // by no more than a thousandth of the time.
 TEST_F(TickPartners, TheToldTimeApproachesTheClockOfTheLeader) {
