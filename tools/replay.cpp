@@ -210,6 +210,9 @@ void add_inputs(CommandLine& line, CheckArguments& arguments) {
       {"--joint", &arguments.joints,
        "NAME=POSITION, rad or m: the position of a joint that the bag or joint log does not have; "
        "repeatable"},
+      {"--use-sim-time", &arguments.use_sim_time,
+       "The time is that of a simulation, by /clock in the bag or by its times of recording, as "
+       "'use_sim_time: true' of 'ros2' in the cell file says"},
   });
 }
 

@@ -144,6 +144,7 @@ void Intake::give(PoseBatch& batch, std::uint64_t writer, std::size_t cut) {
   const bool is_ours = made_for(batch, scene_->revision);
   if (!options_.admits_sources) {
     if (is_ours) slow_.note(batch, *this);
+    lead(batch);
     use_(batch);
     return;
   }
@@ -155,16 +156,19 @@ void Intake::give(PoseBatch& batch, std::uint64_t writer, std::size_t cut) {
   if (!is_ours && !is_former && !std::exchange(tally->warned_of_revision, true)) {
     tell(News(lines::kOtherRevision, tally->source.view(), batch.scene_revision, scene_->revision));
   }
-  if (options_.time != nullptr) {
-    for (const PoseSample& sample : batch.samples) options_.time->lead(sample.stamp_ns);
-    for (const JointSample& sample : batch.joints) options_.time->lead(sample.stamp_ns);
-  }
+  lead(batch);
   if (!use_(batch)) {
     ++tally->lost;
     return;
   }
   tally->cut_poses += cut;
   ++tally->batches;
+}
+
+void Intake::lead(const PoseBatch& batch) noexcept {
+  if (options_.time == nullptr) return;
+  for (const PoseSample& sample : batch.samples) options_.time->lead(sample.stamp_ns);
+  for (const JointSample& sample : batch.joints) options_.time->lead(sample.stamp_ns);
 }
 
 // Counts the batches that are missing before this one, too.

@@ -122,6 +122,7 @@ class Intake final : public Outlet {
   const Kind* add(Arguments&&... arguments);
   [[nodiscard]] Now in_its_time(const Now& now) const noexcept;
   void give(PoseBatch& batch, std::uint64_t writer, std::size_t cut) override;
+  void lead(const PoseBatch& batch) noexcept;
   void tell(News news) override { news_.push_back(std::move(news)); }
   // Returns null if the batch is refused. The batch of a second writer of one name gets a source
   // name of its own: the tick compares what the two say.

@@ -10,6 +10,9 @@
 #include "config/text/sentences.hpp"
 #include "config/text/spelling.hpp"
 #include "monitor/intake/frame_decoders.hpp"
+#include "monitor/intake/stamp_check.hpp"
+#include "monitor/intake/tf_tree.hpp"
+#include "monitor/wire/ros_types.hpp"
 
 namespace clearance {
 namespace {
@@ -26,10 +29,11 @@ constexpr std::string_view kJointStateType = "sensor_msgs/msg/JointState";
 }  // namespace
 
 BagLog::BagLog(const std::filesystem::path& path, const Cell& cell, const InputLogOptions& options)
-    : scene_(&cell.scene),
+    : cell_(&cell),
       options_(options),
       path_(path),
       bag_(open_bag(path)),
+      time_(cell.ros.use_sim_time ? std::make_unique<SimulatedTime>() : nullptr),
       intake_(cell,
               {.is_log = true,
                .joint_topics = options.joint_topics,
@@ -38,7 +42,8 @@ BagLog::BagLog(const std::filesystem::path& path, const Cell& cell, const InputL
                                 : MoveItMessages::Use(),
                .use_sensor = options.with_sensors
                                  ? [this](RawSensorMessage message) { use(std::move(message)); }
-                                 : UseSensorMessage()},
+                                 : UseSensorMessage(),
+               .time = time_.get()},
               [this](PoseBatch& batch) {
                 use(std::move(batch));
                 return true;
@@ -61,7 +66,7 @@ bool BagLog::next(LoggedBatch& batch) {
       if (!given_out_ && error().empty()) error_ = nothing_of_use();
       return false;
     }
-    const auto first = waiting_.begin();
+    const auto first = next_waiting();
     if (let_time_pass(first->first)) continue;
     const Message message = std::move(first->second);
     waiting_.erase(first);
@@ -73,12 +78,20 @@ bool BagLog::next(LoggedBatch& batch) {
   return true;
 }
 
+// The first message of /clock comes before all others, which are judged by it.
+std::multimap<std::int64_t, BagLog::Message>::iterator BagLog::next_waiting() {
+  if (topic_ != nullptr || !has_clock_) return waiting_.begin();
+  return std::ranges::find_if(waiting_, [this](const auto& waiting) {
+    return intake_.is_clock(*waiting.second.topic->number);
+  });
+}
+
 void BagLog::change(const Cell& cell) {
-  const SceneMap map = scene_map(*scene_, cell.scene);
-  for (LoggedBatch& decoded : decoded_) pass_on(map, *scene_, cell.scene, decoded.batch);
-  scene_ = &cell.scene;
+  const SceneMap map = scene_map(cell_->scene, cell.scene);
+  for (LoggedBatch& decoded : decoded_) pass_on(map, cell_->scene, cell.scene, decoded.batch);
+  cell_ = &cell;
   intake_.change(cell);
-  given_ = given_of(*scene_);
+  given_ = given_of(cell_->scene);
   for (auto& [name, topic] : topics_) choose(topic);
 }
 
@@ -109,11 +122,14 @@ void BagLog::keep(const BagMessage& message) {
       Message{&topic, message.log_ns, {message.payload.begin(), message.payload.end()}});
 }
 
-// A changed cell may use more topics, and none that was used is left out.
+// A changed cell may use more topics, and none that was used is left out. A clock that begins late
+// is not used beside the times of recording.
 void BagLog::choose(Topic& topic) {
   if (topic.number || topic.of.encoding != "cdr") return;
-  if (const auto wanted = intake_.topic({topic.of.name, topic.of.type}))
-    topic.number = wanted->number;
+  const auto wanted = intake_.topic({topic.of.name, topic.of.type});
+  if (!wanted || (intake_.is_clock(wanted->number) && topic_ != nullptr)) return;
+  topic.number = wanted->number;
+  has_clock_ = has_clock_ || intake_.is_clock(wanted->number);
 }
 
 // Returns false if nothing is due before that time.
@@ -129,9 +145,36 @@ bool BagLog::let_time_pass(std::int64_t until_ns) {
 void BagLog::take(const Message& message) {
   topic_ = message.topic;
   last_ns_ = log_ns_ = std::max(log_ns_, message.log_ns);
+  const std::int64_t clock_ns = note_time();
   intake_.take({.topic = *topic_->number, .cdr = message.payload, .sent_ns = message.log_ns},
                {.realtime_ns = log_ns_, .monotonic_ns = log_ns_});
+  if (time_ && time_->clock_ns() < clock_ns && given_ns_ > 0) return end_run(clock_ns);
   settle();
+}
+
+// Returns the time of the clock. A recorder with the time of a clock gives all messages of one step
+// the same time.
+std::int64_t BagLog::note_time() {
+  if (!time_) return 0;
+  if (!has_clock_ && (!time_->is_known() || log_ns_ > time_->clock_ns()))
+    time_->note(log_ns_, log_ns_, log_ns_);
+  return time_->clock_ns();
+}
+
+void BagLog::end_run(std::int64_t clock_ns) {
+  error_ = fmt::format(
+      "{}: /clock goes back from {:.3f} s to {:.3f} s. That is another run of the simulation, and "
+      "the messages from then on are not used",
+      path_.string(), seconds(clock_ns), seconds(time_->clock_ns()));
+  ended_ = true;
+  waiting_.clear();
+}
+
+// Returns the time at which what has been decoded can be used. Never decreases.
+std::int64_t BagLog::time_ns() noexcept {
+  const std::int64_t now_ns = time_ ? time_->now_ns(log_ns_) : log_ns_;
+  given_ns_ = std::max(given_ns_, has_clock_ ? now_ns : std::max(now_ns, log_ns_));
+  return given_ns_;
 }
 
 void BagLog::settle() {
@@ -160,7 +203,7 @@ GivenJoints BagLog::given_of(const Scene& scene) const {
 // Messages do not move joints whose positions are given. Batches are numbered in the order of use.
 void BagLog::use(PoseBatch batch) {
   std::erase_if(batch.joints, [this](const JointSample& sample) {
-    const std::string& name = scene_->variables[sample.variable].name;
+    const std::string& name = cell_->scene.variables[sample.variable].name;
     heard_.insert(name);
     return options_.joints.contains(name);
   });
@@ -168,25 +211,47 @@ void BagLog::use(PoseBatch batch) {
     ++topic_->empty;
     return;
   }
-  const auto give_out = [this](PoseBatch decoded) {
+  const std::int64_t now_ns = time_ns();
+  const auto give_out = [this, now_ns](PoseBatch decoded) {
     decoded.sequence_number = ++sequence_[std::string(decoded.source.view())];
-    decoded.scene_revision = scene_->revision;
-    decoded_.push_back({std::move(decoded), log_ns_});
+    decoded.scene_revision = cell_->scene.revision;
+    decoded_.push_back({std::move(decoded), now_ns});
   };
   give_out(std::move(batch));
-  if (!given_.empty()) give_out(given_.at(log_ns_));
+  if (!given_.empty()) give_out(given_.at(now_ns));
 }
 
 void BagLog::use(moveit::RawScene message) {
+  if (time_ && !time_->is_known()) return;
   decoded_.push_back({.batch = {},
-                      .log_ns = log_ns_,
+                      .log_ns = time_ns(),
                       .scene = std::make_shared<const moveit::RawScene>(std::move(message))});
 }
 
 void BagLog::use(RawSensorMessage message) {
+  if (time_ && !time_->is_known()) return;
+  if (time_) lead(message);
   decoded_.push_back({.batch = {},
-                      .log_ns = log_ns_,
+                      .log_ns = time_ns(),
                       .sensor = std::make_shared<const RawSensorMessage>(std::move(message))});
+}
+
+// The stamps of pictures, and of transforms that place a camera.
+void BagLog::lead(const RawSensorMessage& message) {
+  Sample<tf2_msgs_msg_dds__TFMessage_> placed;
+  if (message.type == RawSensorMessage::Type::kTransforms &&
+      decoder_.decode(message.cdr, placed, message.bytes)) {
+    for (std::uint32_t i = 0; i < placed->transforms._length; ++i)
+      time_->lead(StampCheck::time_of(stamp_ns(placed->transforms._buffer[i].header),
+                                      message.sent_ns, cell_->ros.stamps, OtherClock::kReplaced));
+  }
+  const FrameDecoder* const decoder = frame_decoder(message.type);
+  for (const Sensor& sensor : cell_->scene.sensors) {
+    if (decoder == nullptr || sensor.kind != decoder->kind || sensor.topic != message.topic ||
+        sensor.stamps == RosStamps::kSent)
+      continue;
+    if (const auto cloud = decoder->decode(message, sensor, decoder_)) time_->lead(cloud->stamp_ns);
+  }
 }
 
 template <class IsListed>
@@ -212,7 +277,7 @@ std::string BagLog::nothing_of_use() const {
         "{} has nothing that moves this cell: its joint states are of joints that the cell's "
         "robots "
         "do not have: {}; theirs are {}",
-        path_.string(), fmt::join(joints, ", "), fmt::join(joint_names(*scene_), ", "));
+        path_.string(), fmt::join(joints, ", "), fmt::join(joint_names(cell_->scene), ", "));
   }
   return fmt::format(
       "{} has nothing that moves this cell: no joint states of its robots and no transforms to its "
@@ -242,9 +307,9 @@ std::vector<std::string> BagLog::notes() const {
   notes.insert(notes.end(), told_.begin(), told_.end());
   for (const std::string& joint : intake_.joint_states().unknown_names()) {
     notes.push_back(fmt::format("joint '{}' of the bag is not in the cell: left out{}", joint,
-                                did_you_mean(joint, joint_names(*scene_))));
+                                did_you_mean(joint, joint_names(cell_->scene))));
   }
-  note_unheard(*scene_, heard_, options_.joints, notes);
+  note_unheard(cell_->scene, heard_, options_.joints, notes);
   for (const std::string& world : intake_.transforms().worlds()) {
     notes.push_back(fmt::format("frame '{}' is taken to be the cell's world", world));
   }

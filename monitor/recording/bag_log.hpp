@@ -11,10 +11,12 @@
 #include <string>
 #include <vector>
 
+#include "monitor/inputs/simulated_time.hpp"
 #include "monitor/intake/intake.hpp"
 #include "monitor/recording/bag.hpp"
 #include "monitor/recording/given_joints.hpp"
 #include "monitor/recording/input_log.hpp"
+#include "monitor/wire/cdr.hpp"
 
 namespace clearance {
 
@@ -26,6 +28,11 @@ namespace clearance {
 //
 // A stamp of 0, or one more than 10 s off the recorder's clock, does not tell when a position held.
 // The time of recording is used instead.
+//
+// If the cell has `use_sim_time`, all times are those of /clock in the bag, as in the daemon.
+// Without a message of /clock, those of recording are taken to be its times: that is how a recorder
+// with `use_sim_time` writes them, and what a player publishes. A stamp that is ahead of the clock
+// leads the time (SimulatedTime::lead()), so no batch comes before its stamps.
 //
 // A message is decoded when it is given out, by the cell that is in force then. Time passes between
 // two messages as well, so that what falls silent is told as in the daemon.
@@ -63,21 +70,28 @@ class BagLog final : public InputLog {
   void keep(const BagMessage& message);
   void choose(Topic& topic);
   [[nodiscard]] bool let_time_pass(std::int64_t until_ns);
+  [[nodiscard]] std::multimap<std::int64_t, Message>::iterator next_waiting();
   void take(const Message& message);
+  [[nodiscard]] std::int64_t note_time();
+  void end_run(std::int64_t clock_ns);
+  [[nodiscard]] std::int64_t time_ns() noexcept;
   void settle();
   [[nodiscard]] GivenJoints given_of(const Scene& scene) const;
   void use(PoseBatch batch);
   void use(moveit::RawScene message);
   void use(RawSensorMessage message);
+  void lead(const RawSensorMessage& message);
   template <class IsListed>
   [[nodiscard]] std::vector<std::string> topics(const IsListed& is_listed) const;
   [[nodiscard]] std::string nothing_of_use() const;
 
-  const Scene* scene_;
+  const Cell* cell_;
   InputLogOptions options_;
   std::filesystem::path path_;
   std::unique_ptr<Bag> bag_;
+  std::unique_ptr<SimulatedTime> time_;  // null: the times are those of recording
   Intake intake_;
+  CdrDecoder decoder_;
 
   std::map<std::string, Topic> topics_;  // by name
   std::set<std::string> heard_;          // joints
@@ -88,6 +102,8 @@ class BagLog final : public InputLog {
   Topic* topic_ = nullptr;                     // topic of the message that was taken last
   std::int64_t log_ns_ = 0;                    // the time that has come; never decreases
   std::int64_t read_to_ns_ = 0, last_ns_ = 0;  // last_ns_: the time of that message
+  std::int64_t given_ns_ = 0;                  // the time of the batch that was decoded last
+  bool has_clock_ = false;                     // it has messages of /clock that are used
   GivenJoints given_;
   bool ended_ = false, given_out_ = false;
   std::string error_;

@@ -304,6 +304,11 @@ void ReplayRun::note_counts() {
     note_count(result_.rejected[cause],
                std::string("poses were refused: ") + name(static_cast<Reject>(cause)));
   }
+  const bool is_ahead = result_.rejected[static_cast<std::size_t>(Reject::kFuture)] > 0;
+  if (is_ahead && feed_.log() != nullptr && !loop_.cell().ros.use_sim_time)
+    note(
+        "stamps are ahead of the times of recording: if those are of a simulation, say "
+        "--use-sim-time");
 }
 
 // Calls `progress` about a hundred times, whatever the length of the recording.

@@ -46,6 +46,7 @@ struct CheckArguments {
   bool published = false;
   bool evaluate_all = false;
   bool gradients = false;
+  bool use_sim_time = false;
   bool compare = false;
   std::string reference;            // a table of distances; empty: none
   std::optional<double> tolerance;  // m; of the reference

@@ -349,6 +349,7 @@ int check_recording(const CheckArguments& arguments, StopSignal& stop) {
     return kBadCell;
   }
   cell->scene.gradients = cell->scene.gradients || arguments.gradients;
+  cell->ros.use_sim_time = cell->ros.use_sim_time || arguments.use_sim_time;
   if (!arguments.true_meshes) mesh_errors.clear();
   return replay_in(*cell, arguments, mesh_errors, stop);
 }

@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 #include <signal.h>
 #include <stdlib.h>
+#include <sys/socket.h>
+#include <sys/un.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -10,6 +12,7 @@
 #include <cmath>
 #include <functional>
 #include <memory>
+#include <stdexcept>
 #include <string>
 
 #include "counted_allocations.hpp"
@@ -40,7 +43,7 @@ TEST(LimiterInTheLoop, LetsVelocitiesPassToTheBitWhereTheWallIsFar) {
   int passed = 0;
   bool was_free = true;
   Values before{};
-  for (int k = 0; k < 1000; ++k) {
+  for (int k = 0; k < 30'000 && passed < 700; ++k) {
     const Values references = {0.2 * std::sin(0.005 * k), 0.1 * std::sin(0.003 * k)};
     robot.step(references);
     if (was_free && is_free(robot)) {
@@ -50,7 +53,7 @@ TEST(LimiterInTheLoop, LetsVelocitiesPassToTheBitWhereTheWallIsFar) {
     was_free = is_free(robot);
     before = references;
   }
-  EXPECT_GT(passed, 500);
+  EXPECT_EQ(passed, 700);
 }
 
 TEST(LimiterInTheLoop, LetsPositionsPassToTheBitWhereTheWallIsFar) {
@@ -63,7 +66,7 @@ TEST(LimiterInTheLoop, LetsPositionsPassToTheBitWhereTheWallIsFar) {
   int passed = 0;
   bool was_free = true;
   Values before = {-3.0, 0.0};
-  for (int k = 0; k < 1000; ++k) {
+  for (int k = 0; k < 30'000 && passed < 700; ++k) {
     const Values references = {-3.0 + 0.04 * std::sin(0.005 * k), 0.02 * std::sin(0.003 * k)};
     robot.step(references);
     if (was_free && is_free(robot)) {
@@ -73,7 +76,7 @@ TEST(LimiterInTheLoop, LetsPositionsPassToTheBitWhereTheWallIsFar) {
     was_free = is_free(robot);
     before = references;
   }
-  EXPECT_GT(passed, 500);
+  EXPECT_EQ(passed, 700);
 }
 
 // At velocity v (d - 0.1) / 0.3, it needs 0.3 / v ln(10) s from 0.4 m to 0.13 m. A report counts
@@ -95,26 +98,37 @@ TEST(LimiterInTheLoop, SlowsBetweenTheMarginsAndKeepsTheLesserOne) {
   EXPECT_GT(slowed_s, 0.3 / kVelocity * std::log(10.0) - 0.2);
   EXPECT_TRUE(robot.step_until(
       forward, [&] { return robot.observed().cause == kDistance; }, 30.0));
-  for (int k = 0; k < 3000; ++k) {
+  ASSERT_TRUE(robot.step_until(
+      forward, [&] { return robot.distance() < 0.11; }, 30.0));
+  for (int k = 0; k < 2000; ++k) {
     robot.step(forward());
     ASSERT_GT(robot.distance(), 0.1) << k;
   }
-  EXPECT_LT(robot.distance(), 0.11);
 }
 
-// Positions are held as soon as their references are faster than the distance permits.
+// Positions are held as soon as their references are faster than the distance permits. If reports
+// are late before that, the motion begins anew from where the robot stands.
 TEST(LimiterInTheLoop, HoldsPositionsThatAreTooFastBeforeTheMargin) {
   LimitedRobot robot({.interface = "position", .slide = 0.5});
   const auto at_rest = [] { return Values{0.5, 0.0}; };
   ASSERT_TRUE(robot.step_until(
       at_rest, [&] { return is_free(robot); }, 30.0));
-  for (int k = 0; k < 6000; ++k) {
-    robot.step({0.5 + 4e-4 * k, 0.0});
-    ASSERT_GT(robot.distance(), 0.1) << k;
-    ASSERT_LE(speed(robot), 0.5 + 1e-9) << k;
+  double slide = 0.5;
+  const auto forward = [&] {
+    const bool is_late = robot.distance() > 0.4 && robot.observed().cause == kNotRelied;
+    slide = is_late ? robot.observed().positions[0] : slide + 4e-4;
+    return Values{slide, 0.0};
+  };
+  const auto is_held_near = [&] {
+    EXPECT_GT(robot.distance(), 0.1);
+    EXPECT_LE(speed(robot), 0.5 + 1e-9);
+    return (robot.distance() < 0.4 && speed(robot) == 0.0) || testing::Test::HasFailure();
+  };
+  ASSERT_TRUE(robot.step_until(forward, is_held_near, 30.0));
+  for (int k = 0; k < 2000; ++k) {
+    robot.step(forward());
+    ASSERT_EQ(speed(robot), 0.0) << k;
   }
-  EXPECT_LT(robot.distance(), 0.4);
-  EXPECT_EQ(speed(robot), 0.0);
 }
 
 TEST(LimiterInTheLoop, HoldsBelowTheMargin) {
@@ -191,7 +205,7 @@ TEST(LimiterInTheLoop, ObeysTheScalingOfStopsAndKeepsTheirMargin) {
        .reports_count_for = "0.02",
        .stopping = "{reaction_ms: 50, path: kept, deceleration: 2, acceleration: 2}"});
   double fastest = 0.0;
-  for (int k = 0; k < 20'000 && !(robot.distance() < 0.15 && speed(robot) < 0.1); ++k) {
+  for (int k = 0; k < 60'000 && !(robot.distance() < 0.15 && speed(robot) < 0.1); ++k) {
     robot.step({0.4, 0.0});
     fastest = std::max(fastest, speed(robot));
     ASSERT_GT(robot.distance(), 0.05) << k;
@@ -254,10 +268,31 @@ TEST(LimiterInTheLoop, AllocatesNothingInAnUpdate) {
 }  // namespace
 }  // namespace clearance_control_test
 
-// Runs rarely share a domain. Without CYCLONEDDS_URI, all traffic stays on this machine.
+namespace {
+
+// Nodes of ROS 2 have no partitions: two robots in one domain would contradict each other. The name
+// of the socket belongs to this process until it ends.
+int own_domain() {
+  constexpr int kDomains = 99;  // below the ports that the kernel assigns
+  for (int tries = 0; tries < kDomains; ++tries) {
+    const int domain = 1 + (getpid() + tries) % kDomains;
+    const std::string name = "clearance-test-of-ros-domain-" + std::to_string(domain);
+    sockaddr_un address{.sun_family = AF_UNIX, .sun_path = {}};  // no file: the first byte is 0
+    name.copy(address.sun_path + 1, name.size());
+    const int named = socket(AF_UNIX, SOCK_DGRAM | SOCK_CLOEXEC, 0);
+    if (bind(named, reinterpret_cast<const sockaddr*>(&address), sizeof(address)) == 0)
+      return domain;
+    close(named);
+  }
+  throw std::runtime_error("all domains are in use");
+}
+
+}  // namespace
+
+// Without CYCLONEDDS_URI, all traffic stays on this machine.
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
-  setenv("ROS_DOMAIN_ID", std::to_string(1 + getpid() % 99).c_str(), 1);
+  setenv("ROS_DOMAIN_ID", std::to_string(own_domain()).c_str(), 1);
   if (getenv("CYCLONEDDS_URI") == nullptr) setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST", 1);
   rclcpp::init(argc, argv);
   const int status = RUN_ALL_TESTS();
