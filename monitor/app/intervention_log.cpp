@@ -125,11 +125,12 @@ void InterventionLog::open() {
 
 void InterventionLog::note(std::string_view kind, const ordered_json& fields) {
   const std::lock_guard lock(mutex_);
-  if (!is_ending_) put(kind, fields);
+  if (is_ending_) return;
+  waiting_.size() < kMost ? put(kind, fields) : void(++left_out_);
 }
 
 void InterventionLog::put(std::string_view kind, const ordered_json& fields) {
-  if (waiting_.size() >= kMost || is_lost_) {
+  if (is_lost_) {
     ++left_out_;
     return;
   }

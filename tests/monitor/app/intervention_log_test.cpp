@@ -105,7 +105,10 @@ TEST_F(Interventions, GetTheLogLinesThatTellOfOneWhateverTheirLevelAndWhateverTh
 TEST_F(Interventions, EndWithTheLastLineWhateverOtherThreadsNoteMeanwhile) {
   InterventionLog log(file);
   std::jthread other([&](const std::stop_token& stop) {
-    while (!stop.stop_requested()) log.note("other", {});
+    while (!stop.stop_requested()) {
+      log.note("other", {});
+      std::this_thread::sleep_for(std::chrono::microseconds(100));
+    }
   });
   ASSERT_TRUE(eventually([&] { return std::filesystem::file_size(file) > 0; }));
   log.finish("last", {});

@@ -93,7 +93,8 @@ TEST_F(MoveItCell, AMatrixWithANameTwiceIsRefused) {
   matrix.entry_names = {"hand", "hand"};
   matrix.entry_values = {{true, true}, {false, false}};
   EXPECT_EQ(refused(scene), "allowed_collision_matrix.entry_names");
-  matrix = {};
+  matrix.entry_names = {"hand"};
+  matrix.entry_values = {{false}};
   matrix.default_entry_names = {"hand", "hand"};
   matrix.default_entry_values = {true, false};
   EXPECT_EQ(refused(scene), "allowed_collision_matrix.default_entry_names");
