@@ -36,8 +36,8 @@ StoppingJoints::StoppingJoints(const Scene& scene, std::uint32_t robot, JointTra
                 .of = &variable,
                 .index = i,
                 .stop = &stops_.joints[i],
+                .acceleration = stops_.max_accelerations[i],
                 .full_speed = variable.max_speed};
-    if (!stops_.max_accelerations.empty()) added.acceleration = stops_.max_accelerations[i];
     if (joint.type == JointType::kPrismatic) {
       added.lower = variable.lower;
       added.upper = variable.upper;

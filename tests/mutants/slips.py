@@ -81,12 +81,28 @@ def span(slip, source):
     return found[0].span(1)
 
 
+# What stands before a statement, once comments are left out; and an operator that has lost its left operand.
+BEFORE_STATEMENT = re.compile(r"([;{}):]|\belse)\s*(//[^\n]*\s*)*$")
+LOOSE = re.compile(r"[-+*/%&|<>=?]+ ")
+
+
+def compiles_as_a_choice(source, begin, original):
+    """Whether the text is a whole statement or an expression that may stand in parentheses, as far as its ends tell."""
+    if original.endswith(";"):
+        return BEFORE_STATEMENT.search(source, 0, begin) is not None
+    return not LOOSE.match(original)
+
+
 def plant_into(source, slips):
     """The source with all slips of its file as switches; line numbers stay. Raises ListError."""
     spans, errors = collections.defaultdict(list), []
     for slip in slips:
         try:
-            spans[span(slip, source)].append(slip)
+            begin, end = span(slip, source)
+            spans[begin, end].append(slip)
+            if not compiles_as_a_choice(source, begin, source[begin:end]):
+                errors.append(f"{slip.where}: slip {slip.id}: `{source[begin:end]}` is a part of a statement or of an "
+                              "expression: mark a whole expression by {| and |}.")
         except ListError as error:
             errors.append(str(error))
     ordered = sorted(spans)

@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
+#include "core/shapes.hpp"
 #include "tests/shared/hard_bodies.hpp"
 #include "tests/shared/made.hpp"
 #include "tests/shared/random.hpp"
@@ -29,6 +32,33 @@ TEST(Support, IsTheFarthestVertexAlsoWhereManyEdgesAreOrthogonalWithinRounding) 
       if (edge.facet[0] == kNone) continue;
       const Vec3 between = body.facets[edge.facet[0]].normal + body.facets[edge.facet[1]].normal;
       expect_support_point(between.normalized());
+    }
+  }
+}
+
+// Points of the cone of a prism, and of roofs of which one is nearly flat.
+TEST(Support, AlongRaysIsAtLeastThatOfEachPointWithinAndLittleAlongAFacet) {
+  struct Unbounded {
+    std::vector<HalfSpace> rows;
+    std::vector<Vec3> directions;
+  };
+  std::vector<Unbounded> bodies{
+      {{{{1, 1, 0}, 0.5}, {{-1, 1, 0}, 0.5}, {{0, -1, 0}, 0.5}}, {{0, 0, 1}, {0, 0, -1}}}};
+  for (const double slope : {1.0, 1e-5}) {
+    bodies.push_back({{{{slope, 0, 1}, 0.0}, {{-slope, 0, 1}, 0.0}},
+                      {{0, 1, 0}, {0, -1, 0}, {0, 0, -1}, {1, 0, -slope}, {-1, 0, -slope}}});
+  }
+  constexpr double kWithin = 8.0;
+  Random random(2);
+  for (const auto& [rows, directions] : bodies) {
+    const ConvexBody body = test::made(polyhedron_from_halfspaces(rows));
+    for (const Facet& facet : body.facets) {
+      EXPECT_LE(support_along_rays(body, facet.normal, kWithin), 1e-12);
+      for (const double tilt : {1e-15, 1e-3, 1.0}) {
+        const Vec3 m = (facet.normal + tilt * random.direction()).normalized();
+        for (const Vec3& along : directions)
+          EXPECT_GE(support_along_rays(body, m, kWithin), m.dot(kWithin * along.normalized()));
+      }
     }
   }
 }

@@ -5,6 +5,7 @@
 #include <utility>
 #include <vector>
 
+#include "monitor/ask/stopping_joints.hpp"
 #include "monitor/clouds/seen_cloud.hpp"
 #include "tests/monitor/ask/scara_questions.hpp"
 #include "tests/monitor/ask/stopping_scara.hpp"
@@ -131,6 +132,27 @@ TEST(StopsAtLimits, OfAJointThatMayBeAsFastAsEverAreUnknownUntilItsVelocityIs) {
     EXPECT_EQ(stop.validity,
               is_told ? SeparationValidity::kMeasured : SeparationValidity::kUnknown);
     EXPECT_EQ(stop.scaling, is_told ? 1.0 : 0.0);
+  }
+}
+
+// Until the brakes act, the shoulder keeps its velocity v. Then it needs v^2 / (2 d).
+TEST(StopsAtLimits, EndWhereTheVelocityAndThenTheBrakesLead) {
+  for (const std::string& path : {test::kKept, test::kLeft}) {
+    const Scene scene = test::scene_of_scara({.path = path});
+    JointTrajectory motion;
+    StoppingJoints joints(scene, 0, motion);
+    for (const double velocity : {-1.0, 0.0, 0.5}) {
+      auto said = test::joints(0.25, 0.0, 0.0, test::kStart);
+      for (JointSample& joint : said) joint.has_velocity = true;
+      said[0].velocity = velocity;
+      Inputs inputs = initial_inputs(scene);
+      ingest({}, said, TickTime{test::kStart}, scene, inputs);
+      joints.read(inputs);
+      const double until_braking = velocity * test::kReaction;
+      const double braking = velocity * std::abs(velocity) / (2.0 * test::kDeceleration);
+      EXPECT_NEAR(joints.standstill(0), 0.25 + until_braking + braking, 1e-9) << path << velocity;
+      EXPECT_NEAR(joints.standstill(1), 0.0, 1e-9);
+    }
   }
 }
 

@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
+#include "monitor/bodies/tracked_variable.hpp"
 #include "tests/monitor/tick/two_balls.hpp"
 
 namespace clearance {
@@ -214,6 +216,31 @@ TEST(DeadReckoning, ObjectIsUnknownWhileItsTwistLeadsElsewhere) {
   EXPECT_NEAR(found_out, 33, 1);
   EXPECT_GT(known_again, 1000);
   EXPECT_LE(known_again, 1000 + 52 * 20);
+}
+
+// A joint stands for 120 ms under velocities of 1 rad/s, and then moves so under velocities of 0. A
+// driver that sends a velocity that the joint cannot have sends no true ones: its positions count.
+TEST(DeadReckoning, AfterAVelocityThatTheJointCannotHaveNoPositionIsRefusedForOthers) {
+  constexpr int kMoves = 120, kNever = 1000;
+  for (const int wild : {0, 100, kNever}) {
+    JointVariable joint;
+    joint.max_speed = 2.0;
+    joint.age_limit_ns = 20 * kTick;
+    TrackedVariable state;
+    int before = 0, after = 0;
+    for (int ms = 0; ms < 200; ++ms) {
+      const double velocity = ms == wild ? 1e3 : ms < kMoves ? 1.0 : 0.0;
+      const JointSample sample{
+          .position = 1e-3 * std::max(0, ms - kMoves), .velocity = velocity, .has_velocity = true};
+      const std::int64_t now = kStart + ms * kTick;
+      const auto cause =
+          take(joint, sample, now, {.now_ns = now, .future_ns = kTick}, state, state.repetition);
+      (ms < wild ? before : after) += cause ? 1 : 0;
+    }
+    EXPECT_EQ(before > 0, wild > 0) << wild;
+    EXPECT_EQ(after, 0) << wild;
+    EXPECT_EQ(state.velocities_contradict, wild != kNever) << wild;
+  }
 }
 
 // At rest, encoders repeat their values, and a measured speed is noise.

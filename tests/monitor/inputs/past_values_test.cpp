@@ -6,6 +6,8 @@
 
 #include <vector>
 
+#include "monitor/bodies/tracked_variable.hpp"
+#include "monitor/inputs/track.hpp"
 #include "tests/shared/random.hpp"
 
 namespace clearance {
@@ -31,6 +33,33 @@ TEST(PastValues, AreNotKnownFromTheValueBeforeAContradictionUntilTheNextOne) {
   past.clear();
   EXPECT_FALSE(past.is_contradicted(5050));
   EXPECT_TRUE(past.values().empty());
+}
+
+// Samples may come in another order than they were made.
+TEST(PastValues, AreNotKnownAroundAContradictionOfBeforeTheLastOne) {
+  PastValues<double> past(8);
+  past.contradict(5000, 100);
+  past.contradict(1000, 100);
+  for (const std::int64_t at : {900, 1100, 4900, 5100}) EXPECT_TRUE(past.is_contradicted(at)) << at;
+  EXPECT_FALSE(past.is_contradicted(899));
+  past.use(6000, 0.0);
+  EXPECT_FALSE(past.is_contradicted(6000));
+}
+
+TEST(Track, IsSetBackByASampleOfItsOwnSourceFromLongBeforeTheValueInUse) {
+  constexpr std::int64_t kStamp = 5 * kSetBackNs;
+  for (const bool has_value : {false, true}) {
+    for (const std::uint32_t source : {1u, 2u}) {
+      for (const std::int64_t older : {std::int64_t{0}, kSetBackNs, kSetBackNs + 1}) {
+        Track<TrackedVariable, double> track({}, 4);
+        track.now.input.has_value = has_value;
+        track.now.input.stamp_ns = kStamp;
+        track.now.input.owner.take(1, kStamp);
+        EXPECT_EQ(track.is_set_back({.source = source, .stamp_ns = kStamp - older}),
+                  has_value && source == 1 && older > kSetBackNs);
+      }
+    }
+  }
 }
 
 // Few times are kept, and the oldest ones are joined.

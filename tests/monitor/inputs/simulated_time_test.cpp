@@ -219,6 +219,29 @@ TEST(SimulatedTime, OfAMessageFromBeforeTheFirstOneIsOlderThanIt) {
   EXPECT_EQ(SimulatedTime().at(kAhead), 0);
 }
 
+// The last 1,023 messages of the clock are known, here of 1 ms each.
+TEST(SimulatedTime, OfAMessageFromBeforeAllThatIsKeptIsOlderThanTheOldestOfThem) {
+  Simulation of(1.0, kMillisecond);
+  of.play(8 * kSecond);
+  const std::int64_t last = of.now() - kMillisecond, kept = 1022 * kMillisecond;
+  for (const std::int64_t ago : {std::int64_t{0}, kept, kept + kMillisecond, 2 * kept}) {
+    const std::int64_t expected =
+        of.clock() - std::min(ago, kept) - 10 * std::max<std::int64_t>(0, ago - kept);
+    EXPECT_NEAR(static_cast<double>(of.time.at(kAhead + last - ago)), static_cast<double>(expected),
+                20.0);
+  }
+}
+
+TEST(SimulatedTime, OfAMessageFromBeforeTheSimulationBeganAnewIsThatOfTheRunBefore) {
+  Simulation of(1.0, 10 * kMillisecond);
+  of.play(6 * kSecond);
+  const std::int64_t last = of.now() - of.interval();
+  const double expected = of.after(4 * kMillisecond);
+  of.say(2 * kSecond);
+  EXPECT_NEAR(static_cast<double>(of.time.at(kAhead + last + 4 * kMillisecond)), expected, 2.0);
+  EXPECT_EQ(of.time.at(kAhead + of.now()), 2 * kSecond);
+}
+
 // Such a source has another clock, which says nothing of the time.
 TEST(SimulatedTime, IsNotLedByAStampAheadByMoreThanTwoSteps) {
   constexpr std::int64_t kStep = 10 * kMillisecond, kMost = 2 * kStep + SimulatedTime::kLateNs;

@@ -94,6 +94,16 @@ TEST(Tilt, LeavesOutLinesThatNoJointTurns) {
   EXPECT_EQ(cell.tilt({}), 1.0) << "joints that only slide";
 }
 
+TEST(Tilt, IsNotKnownOfCurvedBodiesAndOfPrismsWithoutEnd) {
+  const HalfSpace rows[] = {{{1, 1, 0}, 0.5}, {{-1, 1, 0}, 0.5}, {{0, -1, 0}, 0.5}};
+  const Part can{"can", test::made(cylinder(0.1, 0.4)), {}};
+  const Part prism{"prism", test::made(polyhedron_from_halfspaces(rows)), {}};
+  for (const Part& part : {can, prism}) {
+    EXPECT_TRUE(std::isnan(Placed(part, cube(), test::at(0, 3, 0)).tilt())) << part.name;
+    EXPECT_TRUE(std::isnan(Placed(cube(), part, test::at(0, 3, 0)).tilt())) << part.name;
+  }
+}
+
 // Joints that turn about the normal alone do not tilt a face. About any axis across it they do.
 TEST(Tilt, OfParallelFacesIsNothingUnlessNoJointTiltsThem) {
   const Placed beside(cube(), cube(), test::at(2, 0.3, 0.2)),

@@ -109,6 +109,19 @@ TEST(KeptNear, OfLinksThatNoJointMovesIsTheirDistance) {
   EXPECT_TRUE(names_kept(scene, 1.05 + 1e-6).contains("upper finger"));
 }
 
+TEST(KeptNear, OfLinksOfSeveralPartsIsTheDistanceOfTheNearestTwo) {
+  for (const std::ptrdiff_t place : {0, 1}) {
+    Scene scene = test::scara_cell();
+    scene.robots[0].joints[1].type = scene.robots[0].joints[2].type = JointType::kFixed;
+    for (const std::size_t object : {3u, 5u}) {
+      auto& parts = scene.objects[object].parts;
+      parts.insert(parts.begin() + place, test::ball(0.01, test::at(0, 50.0, 0)));
+    }
+    EXPECT_FALSE(names_kept(scene, 1.05 - 1e-6).contains("upper finger"));
+    EXPECT_TRUE(names_kept(scene, 1.05 + 1e-6).contains("upper finger"));
+  }
+}
+
 // One variable bends both joints alike. Stretched is still the farthest that foot and lower link
 // come apart, and no third variable is between foot and finger.
 TEST(KeptNear, CountsJointsOfOneVariableOnce) {

@@ -5,6 +5,8 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <set>
+#include <string_view>
 #include <vector>
 
 #include "monitor/wire/cdr.hpp"
@@ -95,6 +97,24 @@ TEST(Crc, TakesANullTextForAnEmptyOne) {
   one->recording = dds_string_dup("x");
   EXPECT_EQ(crc_of(*null), crc_of(*empty));
   EXPECT_NE(crc_of(*null), crc_of(*one));
+}
+
+// A receiver tells by it whether a message is for the topic that it reads.
+TEST(Address, IsAnotherOneInAnotherDomainPartitionOrTopic) {
+  struct Place {
+    std::uint32_t domain;
+    std::string_view partition, topic;
+  };
+  constexpr Place kPlaces[] = {{7, "demo", "distances"}, {8, "demo", "distances"},
+                               {7, "dem", "odistances"}, {7, "", "demodistances"},
+                               {7, "demodistances", ""}, {7, "demo", "distancef"},
+                               {7, "Demo", "distances"}, {7, "", ""}};
+  std::set<std::uint64_t> addresses;
+  for (const auto& [domain, partition, topic] : kPlaces) {
+    const std::uint64_t address = report_address(domain, partition, topic);
+    EXPECT_EQ(report_address(domain, partition, topic), address);
+    EXPECT_TRUE(addresses.insert(address).second) << domain << ' ' << partition << ' ' << topic;
+  }
 }
 
 // A report of two sources, with zones that are active.

@@ -4,9 +4,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cstring>
 #include <regex>
 #include <set>
+#include <vector>
 
 #include "monitor/recording/layout_change.hpp"
 #include "monitor/recording/topic_schema.hpp"
@@ -163,6 +165,40 @@ TEST_P(ReportFields, OfGradientsComeThroughTheWire) {
       EXPECT_EQ(report.gradients.rates[rows.rows[r].first + i], pair.joints._buffer[i].rate);
     }
   }
+}
+
+// The reports of a share have the ids of its scene. Zones, cycles and what else is a number stay.
+TEST_P(ReportFields, ThatMeanPairsAndNoOthersGetTheIdsOfAnotherList) {
+  constexpr std::array<std::uint32_t, 3> kIds{12, 10, 11};
+  const auto number = [&](clearance_msg_Distances& message, const auto& id_of) {
+    message.minimum.pair = id_of(2u);
+    for (std::uint32_t i = 0; i < message.pairs._length; ++i)
+      message.pairs._buffer[i].pair = id_of(i);
+    for (std::uint32_t i = 0; i < message.contacts._length; ++i)
+      message.contacts._buffer[i].pair = id_of(i);
+  };
+  Sample<clearance_msg_Distances> message = make_distances(scene);
+  ASSERT_TRUE(to_wire(report, {}, 77, *message));
+  ASSERT_GT(message->pairs._length, kIds.size()) << "some ids have no counterpart";
+  ASSERT_GT(message->contacts._length, 0u);
+  CdrEncoder encoder;
+  const auto bytes = [&](const auto& of) {
+    const auto encoded = encoder.encode(of);
+    return std::vector<std::byte>(encoded.begin(), encoded.end());
+  };
+  number(*message, [&](std::uint32_t i) { return i < kIds.size() ? kIds[i] : i; });
+  const auto expected = bytes(*message);
+  number(*message, [](std::uint32_t i) { return i; });
+  const auto before = bytes(*message);
+  MapPairs({}).in(*message);
+  EXPECT_EQ(bytes(*message), before) << "a list without ids changes nothing";
+  MapPairs(kIds).in(*message);
+  EXPECT_EQ(bytes(*message), expected);
+  clearance_msg_ZoneState zone{};
+  zone.zone = zone.pair = 1;
+  MapPairs(kIds).in(zone);
+  EXPECT_EQ(zone.pair, 10u);
+  EXPECT_EQ(zone.zone, 1u);
 }
 
 INSTANTIATE_TEST_SUITE_P(WithEachFlagSetAndNot, ReportFields, testing::Values(1, 65));
