@@ -23,7 +23,7 @@ struct RawSensorMessage;
 // One message.
 struct LoggedBatch {
   PoseBatch batch;
-  // When it was recorded. In a simulated time (`use_sim_time`), no earlier than its stamps.
+  // When it was recorded. With `use_sim_time`, no earlier than the stamps that lead the time.
   std::int64_t log_ns = 0;
   // A message of MoveIt that keeps the scene; the batch is then empty. Null: it is a batch.
   std::shared_ptr<const moveit::RawScene> scene = {};
