@@ -32,7 +32,7 @@ namespace clearance {
 // If the cell has `use_sim_time`, all times are those of /clock in the bag, as in the daemon.
 // Without a message of /clock, those of recording are taken to be its times: that is how a recorder
 // with `use_sim_time` writes them, and what a player publishes. A stamp that is ahead of the clock
-// leads the time (SimulatedTime::lead()), so no batch comes before its stamps.
+// leads the time (SimulatedTime::lead()), and no batch comes before such a stamp.
 //
 // A message is decoded when it is given out, by the cell that is in force then. Time passes between
 // two messages as well, so that what falls silent is told as in the daemon.

@@ -23,7 +23,8 @@ struct RawSensorMessage;
 // One message.
 struct LoggedBatch {
   PoseBatch batch;
-  std::int64_t log_ns = 0;  // when it was recorded
+  // When it was recorded. With `use_sim_time`, no earlier than the stamps that lead the time.
+  std::int64_t log_ns = 0;
   // A message of MoveIt that keeps the scene; the batch is then empty. Null: it is a batch.
   std::shared_ptr<const moveit::RawScene> scene = {};
   // Likewise, a message of a sensor, or transforms that may place one.

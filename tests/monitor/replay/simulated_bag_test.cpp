@@ -129,16 +129,21 @@ TEST_F(SimulatedBag, IsNotUsedByTheCellOfARealRobotAndTheNoteNamesTheOption) {
 }
 
 TEST_F(SimulatedBag, RefusesStampsThatAreFarAheadAndUsesTheOthers) {
+  constexpr int kCount = 200;
   std::vector<RosMessage> messages;
-  for (const RosMessage& message : motion({"", false, false}, 200)) {
+  for (const RosMessage& message : motion({"", false, false}, kCount)) {
     messages.push_back(message);
     messages.push_back(joint_state(message.log_ns, message.log_ns + 400 * kMs, {{"push"}, {0.1}}));
   }
+  const std::uint32_t pair = pair_of("upper", "wall");
   std::int64_t last_ns = 0;
-  const OfflineReplay done =
-      replay(messages, [&](const ReplayedTick& tick) { last_ns = tick.report.now_ns; });
-  EXPECT_GT(done.rejected[static_cast<std::size_t>(Reject::kFuture)], 0u);
-  EXPECT_LE(last_ns, kBegin + 200 * kJointStep);
+  const OfflineReplay done = replay(messages, [&](const ReplayedTick& tick) {
+    last_ns = tick.report.now_ns;
+    EXPECT_GT(tick.monitor.pair(pair).lower, 0.0);
+  });
+  EXPECT_EQ(done.rejected[static_cast<std::size_t>(Reject::kFuture)], std::uint64_t{kCount});
+  EXPECT_EQ(refused(done), std::uint64_t{kCount});
+  EXPECT_EQ(last_ns, kBegin + (kCount - 1) * kJointStep);
 }
 
 TEST_F(SimulatedBag, IsReplayedUntilItsClockGoesBack) {
