@@ -22,9 +22,9 @@ double factor_of(const Separation& terms, double human_speed, double distance,
   const Approach approach{.human_speed = human_speed};
   const double limit = largest_speed(terms, approach, distance);
   if (limit == kInfinity) return kInfinity;
-  if (limit > 0.0) return speed > 0.0 ? rounded_down(limit / speed) : kInfinity;
+  if (limit > 0.0 && speed > 0.0) return rounded_down(limit / speed);
   if (!(protective_distance(terms, approach, 0.0).sum <= distance)) return 0.0;
-  return speed > 0.0 ? 0.0 : kInfinity;
+  return speed == 0.0 ? kInfinity : 0.0;
 }
 
 }  // namespace
