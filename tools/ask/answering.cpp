@@ -82,7 +82,7 @@ int Answering::answer_all(std::istream& in, std::ostream& out) {
     if (text.find_first_not_of(" \t\r") == std::string::npos) continue;
     AskedMotion motion{.where = std::to_string(number)};
     try {
-      const nlohmann::json line = nlohmann::json::parse(text);
+      const nlohmann::json line = parse_line(text);
       if (line.contains("id")) motion.id = line["id"];
       motion.question = read_question(line, defaults_);
       motion.place = &place_of(line);
