@@ -18,9 +18,9 @@ namespace {
 constexpr const char* kDescription =
     R"(Says of a motion before it is made how near it comes to anything: at all instants, not at samples.
 
-MOTIONS may be a bag of ROS 2: then each trajectory_msgs/JointTrajectory is a motion, and all other joints are where the
-joint states before it have them. Objects, frames of sensors and MoveIt's scene are those that a replay of the bag has
-at that time. Otherwise MOTIONS has one motion a line, below.
+MOTIONS may be a bag of ROS 2: then each trajectory_msgs/JointTrajectory is a motion. All other joints, objects, frames
+of sensors and MoveIt's scene are those that a replay of the bag has at that time, judged as the daemon judges them.
+Otherwise MOTIONS has one motion a line, below.
 
 CELL is a cell file. If it is a folder, the key "scene" of each motion names a cell in it: SCENE.yaml.
 A motion is a JSON object:

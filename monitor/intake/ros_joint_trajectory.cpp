@@ -4,6 +4,9 @@
 
 #include <algorithm>
 #include <cstdint>
+#include <vector>
+
+#include "monitor/wire/moveit_types.hpp"
 
 namespace clearance {
 namespace {
@@ -13,16 +16,17 @@ double seconds_of(const builtin_interfaces_msg_dds__Duration_& duration) {
 }
 
 // Adds where the joints are before the first point. Returns a sentence if that is not known.
-std::string begin_at_rest(const std::vector<HeldJoint>& held, JointTrajectory& motion) {
+std::string begin_at_rest(const Scene& scene, const InputState& state, JointTrajectory& motion) {
   for (const std::string& joint : motion.joints) {
-    const auto known = std::ranges::find(held, joint, &HeldJoint::name);
-    if (known == held.end()) {
+    const auto found = std::ranges::find(scene.variables, joint, &JointVariable::name);
+    const auto at = static_cast<std::size_t>(found - scene.variables.begin());
+    if (found == scene.variables.end() || state.joints[at].state != PresentPose::State::kUsable) {
       return fmt::format(
           "found a first point after time 0 and no position of joint '{}' before it; expected a "
           "point at time 0, or a joint state",
           joint);
     }
-    motion.positions.push_back(known->position);
+    motion.positions.push_back(state.joints[at].position);
   }
   motion.times.push_back(0.0);
   return "";
@@ -30,8 +34,13 @@ std::string begin_at_rest(const std::vector<HeldJoint>& held, JointTrajectory& m
 
 }  // namespace
 
-std::variant<JointTrajectory, std::string> motion_of(
-    const trajectory_msgs_msg_dds__JointTrajectory_& message, const std::vector<HeldJoint>& held) {
+std::variant<JointTrajectory, std::string> motion_of(std::span<const std::byte> cdr, CdrBytes bytes,
+                                                     const Scene& scene, const InputState& state) {
+  CdrDecoder decoder;
+  Sample<trajectory_msgs_msg_dds__JointTrajectory_> decoded;
+  if (!decoder.decode(cdr, decoded, bytes))
+    return "found bytes that do not decode; expected a JointTrajectory";
+  const trajectory_msgs_msg_dds__JointTrajectory_& message = *decoded;
   JointTrajectory motion;
   const std::uint32_t joints = message.joint_names._length, points = message.points._length;
   if (joints == 0 || points == 0)
@@ -45,7 +54,7 @@ std::variant<JointTrajectory, std::string> motion_of(
   const bool has_velocities =
       std::all_of(first, last, [&](const auto& each) { return each.velocities._length == joints; });
   if (seconds_of(first->time_from_start) > 0.0) {
-    if (std::string reason = begin_at_rest(held, motion); !reason.empty()) return reason;
+    if (std::string reason = begin_at_rest(scene, state, motion); !reason.empty()) return reason;
     if (has_velocities) motion.velocities.assign(joints, 0.0);
   }
   for (std::uint32_t i = 0; i < points; ++i) {
