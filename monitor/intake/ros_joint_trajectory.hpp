@@ -13,8 +13,10 @@
 
 namespace clearance {
 
-// Decodes a message that comes at the tick of `state`. Returns the motion on the clock of
-// time_from_start, or a sentence that says why the message is none.
+// Decodes a message that comes at the tick of `state`. Returns the motion, whose time 0 is that of
+// the tick, or a sentence that says why the message is none. A stamp of 0, and one before the tick,
+// means that the motion begins at once. A stamp that is ahead by more than the age limit of its
+// joints is refused, and a nearer one delays it.
 //
 // A controller moves from where the joints are to the first point, if that has a time above 0.
 // Their usable positions in `state` then become a waypoint at time 0, at rest.

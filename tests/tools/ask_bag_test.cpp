@@ -148,6 +148,29 @@ TEST_F(AskOfABag, HasNoInputWhereTheDaemonWouldHaveNone) {
       << output;
 }
 
+// The finger is at rest 1 m from the cart, which comes nearer by 0.1 m/s.
+TEST_F(AskOfABag, AStampAheadDelaysAMotionAndIsRefusedBeyondTheAgeLimit) {
+  write_text(folder / "cell.yaml",
+             "name: bag\nunits: {length: m, angle: rad}\ndefaults: {age_limit_ms: 5000}\n"
+             "ros2: {world_frame: map}\nrobots: [{name: arm, urdf: scara.urdf}]\nobjects:\n"
+             "  - {name: cart, frame: cart_link, may_jump: true, max_speed: 0.1, sphere: {radius: "
+             "0.1}}\npairs: [{between: [arm, cart]}]\n");
+  const auto lower = [&](std::int64_t stamp_ns) {
+    const JointStateText rest{{"elbow", "push", "shoulder"}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+    ask({joint_state(kSecondNs, kSecondNs, rest),
+         transforms(kSecondNs, kSecondNs, {{"map", "cart_link", {3.15, 0.0, 0.0}}}),
+         trajectory(kSecondNs, {"shoulder"}, {{0.0, {0.0}}, {1.0, {0.0}}}, stamp_ns)});
+    return answers.at(0);
+  };
+  EXPECT_NEAR(lower(0)["lower"], 1.0 - 0.1, 1e-3);
+  EXPECT_NEAR(lower(kSecondNs)["lower"], 1.0 - 0.1, 1e-3);
+  EXPECT_NEAR(lower(kSecondNs / 2)["lower"], 1.0 - 0.1, 1e-3) << "in the past";
+  EXPECT_NEAR(lower(5 * kSecondNs)["lower"], 1.0 - 0.5, 1e-3);
+  EXPECT_NE(lower(7 * kSecondNs).value("error", "").find("header.stamp 6.000 s ahead"),
+            std::string::npos)
+      << answers.at(0);
+}
+
 TEST_F(AskOfABag, TakesVelocitiesAndRefusesAccelerations) {
   const auto with_points = [&](std::vector<PointText> points) {
     return ask({joint_state(kSecondNs, kSecondNs, kRest),
