@@ -141,11 +141,10 @@ TEST_F(AskOfABag, HasNoInputWhereTheDaemonWouldHaveNone) {
   }
   two.push_back(motion(1.2));
   EXPECT_NE(reason(two).find("'elbow' contradicted"), std::string::npos);
-  // A motion of all joints needs no other input.
   EXPECT_EQ(ask({trajectory(at(1), {"shoulder", "elbow", "push"},
                             {{0.0, {-1.0, 0.0, 0.0}}, {1.0, {-0.9, 0.0, 0.0}}})}),
             0)
-      << output;
+      << "a motion of all joints needs no other input: " << output;
 }
 
 // The finger is at rest 1 m from the cart, which comes nearer by 0.1 m/s.
