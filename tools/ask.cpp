@@ -18,9 +18,9 @@ namespace {
 constexpr const char* kDescription =
     R"(Says of a motion before it is made how near it comes to anything: at all instants, not at samples.
 
-MOTIONS may be a bag of ROS 2: then each trajectory_msgs/JointTrajectory is a motion, and all other joints are where the
-joint states before it have them. Objects, frames of sensors and MoveIt's scene are those that a replay of the bag has
-at that time. Otherwise MOTIONS has one motion a line, below.
+MOTIONS may be a bag of ROS 2: then each trajectory_msgs/JointTrajectory is a motion. All other joints, objects, frames
+of sensors and MoveIt's scene are those that a replay of the bag has at that time, judged as the daemon judges them.
+Otherwise MOTIONS has one motion a line, below.
 
 CELL is a cell file. If it is a folder, the key "scene" of each motion names a cell in it: SCENE.yaml.
 A motion is a JSON object:
@@ -46,6 +46,8 @@ A motion is a JSON object:
   time_scaling  true: the largest factor by which the motion may be timed faster so that S_p of zones holds
   stoppable   true: bounds and margins count stops that begin at any instant of the motion, too, as the cell states
               stopping for its robots; time_scaling keeps the margins as well, and tries no factor above 1
+Keys that describe it are not read: kind, how, what, nominal, recording, robot, least, first_below, evals, gap. Any
+other key is refused, and so is one that stands twice.
 An answer has id; without, if sensors are left out; lower, upper: bounds of the least distance over the whole motion, m (0 where bodies overlap);
 t, pair, points: where upper is attained (points in the world); for each margin a verdict, free, below or
 undecided, and first_below: null if free, {"t": [from, to], "pair"} if below. The distance is at least the margin

@@ -90,7 +90,7 @@ int answer_all(const Options& options, std::istream& in, std::ostream& out) {
     ++lines;
     OrderedJson answer;
     try {
-      const nlohmann::json question = nlohmann::json::parse(line);
+      const nlohmann::json question = parse_line(line);
       if (is_curved_case(question)) {
         answer = curved.answer(read_curved_case(question));
       } else {

@@ -209,8 +209,9 @@ MotionSearch::Pair MotionSearch::pair_at(std::uint32_t pair, const TipMotion& mo
     nearing.until_begin += rounded_down(motion.nearing.until_begin + of_base.until_begin);
     approach = &approach_;
   }
-  return {base, tip, *approach,
-          rounded_up(motion.moved + motion.error + approach->moved + approach->nearing.until_end)};
+  const double loss =
+      rounded_up(motion.moved + motion.error + approach->moved + approach->nearing.until_end);
+  return {base, tip, *approach, std::isnan(loss) ? kInfinity : loss};
 }
 
 std::uint32_t MotionSearch::near_ones(const Bundle& bundle, std::uint32_t count,
@@ -243,8 +244,9 @@ std::uint32_t MotionSearch::near_ones(const Bundle& bundle, std::uint32_t count,
 
 double MotionSearch::gap(const Pair& at, std::uint32_t pair, double enough) const noexcept {
   const PartPair& of = pairs_.pairs()[pair];
-  return gap_at_least(at.base, pairs_.box(of.base), at.tip,
-                      pairs_.box(pairs_.bundles()[of.bundle].tip), enough);
+  const double apart = gap_at_least(at.base, pairs_.box(of.base), at.tip,
+                                    pairs_.box(pairs_.bundles()[of.bundle].tip), enough);
+  return std::isnan(apart) ? -kInfinity : apart;
 }
 
 PairAtMiddle MotionSearch::query(const Pair& at, std::uint32_t pair) noexcept {

@@ -76,6 +76,7 @@ class MotionSearch {
   // A pair of a zone with `separation`.
   struct SeparatedPair {
     std::uint32_t zone = 0, pair = 0;  // Scene::zones; PartPairs
+    std::uint32_t robot = 0;           // the link that the zone limits
     double margins = 0.0;              // m
     double human_speed = 0.0;          // m/s
   };
@@ -203,7 +204,6 @@ class MotionSearch {
   // Time scaling (time_scaling.cpp).
   void collect_separated();
   [[nodiscard]] std::optional<std::string> fault_of_scaling() const;
-  [[nodiscard]] std::uint32_t limited_robot(std::uint32_t separated) const noexcept;
   void scale_time();
   void scale(const Stretch& stretch, std::size_t count, double known) noexcept;
   void scale_stops();

@@ -23,8 +23,8 @@ std::optional<std::string> fault(const ObjectMotion& motion) {
   for (std::size_t i = 0; i < motion.times.size(); ++i) {
     if (!(std::abs(motion.times[i]) <= 1e9))
       return named(motion) + "has a time that is not a finite number of at most 1e9 s";
-    if (i > 0 && !(motion.times[i] > motion.times[i - 1]))
-      return named(motion) + "has times that do not increase";
+    if (i > 0 && !(motion.times[i] - motion.times[i - 1] >= kShortestStep))
+      return named(motion) + "has times that do not increase by 1e-20 s or more";
     const Pose& pose = motion.world_from_object[i];
     if (!is_unit(pose.orientation) || !pose.position.allFinite())
       return named(motion) + "has a pose that is not finite, or not of unit length";

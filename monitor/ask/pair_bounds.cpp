@@ -87,6 +87,8 @@ TipMotion tip_motion(const Bundle& bundle, const Stretch& stretch, double middle
     motion.nearing = chains.nearing(bundle.chain, bundle.object_tip, sphere, posture.bounds(),
                                     posture.free_variables());
   }
+  // A figure that is no number bounds nothing.
+  if (std::isnan(motion.moved + motion.error)) motion.moved = motion.error = kInfinity;
   if (!stretch.is_in_one_segment()) return motion;
   motion.has_twist = true;
   Vec3 base_origin, tip_origin;
@@ -166,6 +168,7 @@ double lower_over(const PairAtMiddle& found, const PosedPart& base, const PosedP
                   double enough) noexcept {
   const double loss = rounded_up(motion.error + approach.nearing.until_end);
   double lower = rounded_down(found.lower - rounded_up(motion.moved + approach.moved + loss));
+  if (std::isnan(lower)) return -kInfinity;
   if (lower >= enough || !found.separated || !motion.has_twist) return lower;
   if (!tip_keeps_direction || !base.keeps_direction) return lower;
   if (motion.moved == 0.0 && approach.moved == 0.0) return lower;
@@ -173,8 +176,7 @@ double lower_over(const PairAtMiddle& found, const PosedPart& base, const PosedP
   const double more = rounded_up(approach.turned + loss);
   const double slab = by_slab(found, base, tip, motion.twist.linear - approach.velocity,
                               motion.twist.angular, motion.half, bend, enough + more);
-  lower = std::max(lower, rounded_down(slab - more));
-  return std::isnan(lower) ? -kInfinity : lower;
+  return std::max(lower, rounded_down(slab - more));
 }
 
 // The closest points at the middle stay on the bodies, so the distance is never above theirs.

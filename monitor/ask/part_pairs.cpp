@@ -37,7 +37,25 @@ PartBox box_around(const ConvexBody& shape) {
   return box;
 }
 
-// A pair of objects, directed: the tip is a link that moves relative to the base.
+// The objects of a pair that zones limit by their distance from the other one.
+struct Limited {
+  bool first = false, second = false;
+};
+
+// By Scene::pairs.
+std::vector<Limited> limited_objects(const Scene& scene) {
+  std::vector<Limited> limited(scene.pairs.size());
+  for (const Zone& zone : scene.zones) {
+    for (std::size_t i = 0; zone.separation && i < zone.pairs.size(); ++i) {
+      Limited& of = limited[zone.pairs[i]];
+      (zone.separation->human_is_first[i] != 0 ? of.second : of.first) = true;
+    }
+  }
+  return limited;
+}
+
+// A pair of objects, directed: the tip is a link that moves relative to the base. Of two links, it
+// is the one that a zone limits.
 struct Directed {
   std::uint32_t base, tip;
   bool swapped, base_is_link, base_carries_tip;
@@ -52,9 +70,11 @@ PartPairs::PartPairs(const Scene& scene, Posture& posture) {
   for (const PosedPart& part : posture.parts()) boxes_.push_back(box_around(*part.shape));
   Chains& chains = posture.chains();
   std::vector<Directed> directed;
-  for (const ObjectPair& watched : scene.pairs) {
-    std::uint32_t base = watched.first, tip = watched.second;
-    const bool swapped = !chains.is_link(tip) || (chains.is_link(base) && !chains.can_move(tip));
+  const std::vector<Limited> limited = limited_objects(scene);
+  for (std::size_t p = 0; p < scene.pairs.size(); ++p) {
+    std::uint32_t base = scene.pairs[p].first, tip = scene.pairs[p].second;
+    const bool first_is_tip = limited[p].first || (!limited[p].second && !chains.can_move(tip));
+    const bool swapped = !chains.is_link(tip) || (chains.is_link(base) && first_is_tip);
     if (swapped) std::swap(base, tip);
     if (!chains.is_link(tip)) continue;
     directed.push_back({.base = base,

@@ -22,9 +22,9 @@ double factor_of(const Separation& terms, double human_speed, double distance,
   const Approach approach{.human_speed = human_speed};
   const double limit = largest_speed(terms, approach, distance);
   if (limit == kInfinity) return kInfinity;
-  if (limit > 0.0) return speed > 0.0 ? rounded_down(limit / speed) : kInfinity;
+  if (limit > 0.0 && speed > 0.0) return rounded_down(limit / speed);
   if (!(protective_distance(terms, approach, 0.0).sum <= distance)) return 0.0;
-  return speed > 0.0 ? 0.0 : kInfinity;
+  return speed == 0.0 ? kInfinity : 0.0;
 }
 
 }  // namespace
@@ -44,24 +44,23 @@ void MotionSearch::collect_separated() {
       for (std::uint32_t p = 0; p < pairs_.pairs().size(); ++p) {
         std::uint32_t first = 0, second = 0;
         note_pair(p, first, second);
-        const std::uint32_t tip = pairs_.bundles()[pairs_.pairs()[p].bundle].object_tip;
-        if (first == objects.first && second == objects.second && tip == robot)
-          separated_.push_back({z, p, margins, human_speed});
+        if (first == objects.first && second == objects.second)
+          separated_.push_back({z, p, robot, margins, human_speed});
       }
     }
   }
   scaled_.resize(separated_.size());
 }
 
-// The link that the zone limits.
-std::uint32_t MotionSearch::limited_robot(std::uint32_t separated) const noexcept {
-  return pairs_.bundles()[pairs_.pairs()[separated_[separated].pair].bundle].object_tip;
-}
-
 std::optional<std::string> MotionSearch::fault_of_scaling() const {
   for (std::uint32_t i = 0; i < separated_.size(); ++i) {
-    const std::uint32_t robot = limited_robot(i);
+    const std::uint32_t robot = separated_[i].robot;
     const Zone& zone = scene_.zones[separated_[i].zone];
+    if (posture_.is_of_question(robot) && bundle_of(separated_[i].pair).object_tip != robot) {
+      return "the zone \"" + zone.name + "\" limits \"" + scene_.objects[robot].name +
+             "\", which another zone has as its human beside the same object: a motion is timed "
+             "only if a pair has one human";
+    }
     if (posture_.is_of_question(robot) && zone.separation->reaction_is_measured) {
       return "the zone \"" + zone.name +
              "\" states controller_time_ms: a motion is timed only if it states reaction_time_ms, "
@@ -81,7 +80,7 @@ void MotionSearch::scale_time() {
   std::size_t count = 0;
   for (std::uint32_t i = 0; i < separated_.size(); ++i) {
     const PartPair& pair = pairs_.pairs()[separated_[i].pair];
-    const std::uint32_t robot = limited_robot(i);
+    const std::uint32_t robot = separated_[i].robot;
     if (posture_.is_present(posture_.parts()[pair.base].object) && posture_.is_present(robot) &&
         posture_.is_of_question(robot))
       scaled_[count++] = i;

@@ -50,7 +50,13 @@ std::optional<std::string> fault(const JointTrajectory& motion) {
     return "a position or velocity is not finite, or larger than 1e6";
   }
   for (std::size_t i = 1; i < rows; ++i) {
-    if (motion.times[i] > motion.times[i - 1]) continue;
+    const double step = motion.times[i] - motion.times[i - 1];
+    if (step >= kShortestStep) continue;
+    if (step > 0.0) {
+      return "the time of waypoint " + std::to_string(i) +
+             " is less than 1e-20 s after that of the one before; expected the same time, or a "
+             "longer step";
+    }
     if (motion.times[i] == motion.times[i - 1] && !jumps(motion, i)) continue;
     return "the time of waypoint " + std::to_string(i) +
            " is not after that of the one before, and its positions are others";

@@ -40,6 +40,10 @@ struct VelocityRange {
   [[nodiscard]] double largest_speed() const noexcept { return std::max(-least, most); }
 };
 
+// A step between two waypoints is 0, or at least this, s. All figures of a motion, up to the square
+// of a jerk, are finite then.
+inline constexpr double kShortestStep = 1e-20;
+
 // The row of a track's waypoints that begins in or before a segment of the timeline.
 inline constexpr std::int32_t kBeforeFirstRow = -1;
 

@@ -9,7 +9,6 @@
 #include "monitor/intake/ros_joint_trajectory.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/publish/motion_diagnostics.hpp"
-#include "monitor/wire/cdr.hpp"
 #include "monitor/wire/moveit_types.hpp"
 
 namespace clearance {
@@ -18,24 +17,10 @@ namespace {
 constexpr std::int64_t kSecondNs = 1'000'000'000;
 constexpr const char* kDiagnostics = "/diagnostics";
 
-// The positions of joints at a tick, where they are usable.
-std::vector<HeldJoint> present_joints(const Scene& scene, const InputState& state) {
-  std::vector<HeldJoint> joints;
-  for (std::size_t i = 0; i < scene.variables.size(); ++i) {
-    if (state.joints[i].state == PresentPose::State::kUsable)
-      joints.push_back({scene.variables[i].name, state.joints[i].position});
-  }
-  return joints;
-}
-
 // Decodes in the thread of the desk: a motion may begin where the joints are then.
 std::string make_motion(std::span<const std::byte> cdr, const Scene& scene, const InputState& state,
                         Question& question) {
-  CdrDecoder decoder;
-  Sample<trajectory_msgs_msg_dds__JointTrajectory_> message;
-  if (!decoder.decode(cdr, message, CdrBytes::kOfReader))
-    return "found bytes that do not decode; expected a JointTrajectory";
-  auto made = motion_of(*message, present_joints(scene, state));
+  auto made = motion_of(cdr, CdrBytes::kOfReader, scene, state);
   if (auto* reason = std::get_if<std::string>(&made)) return std::move(*reason);
   question.motion = std::get<JointTrajectory>(std::move(made));
   return "";

@@ -1,22 +1,31 @@
 // trajectory_msgs/JointTrajectory of ROS 2 as a motion that can be asked about.
 #pragma once
 
+#include <cstddef>
+#include <span>
 #include <string>
 #include <variant>
-#include <vector>
 
+#include "config/scene/scene.hpp"
+#include "monitor/interface/present_inputs.hpp"
 #include "monitor/interface/question.hpp"
-#include "monitor/wire/moveit_types.hpp"
+#include "monitor/wire/cdr.hpp"
 
 namespace clearance {
 
-// Returns the motion on the clock of time_from_start, or a sentence that says why the message is
-// none. A controller moves from where the joints are to the first point, if that has a time above
-// 0. `held` then gives their positions, which become a waypoint at time 0, at rest.
+// Decodes a message that comes at the tick of `state`. Returns the motion, whose time 0 is that of
+// the tick, or a sentence that says why the message is none. A stamp of 0, and one before the tick,
+// means that the motion begins at once. A stamp that is ahead by more than the age limit of its
+// joints is refused, and a nearer one delays it.
+//
+// A controller moves from where the joints are to the first point, if that has a time above 0.
+// Their usable positions in `state` then become a waypoint at time 0, at rest.
 //
 // Velocities are taken if all points have them. Messages with accelerations are refused, because
 // the motion is then of a higher degree than cubic.
-[[nodiscard]] std::variant<JointTrajectory, std::string> motion_of(
-    const trajectory_msgs_msg_dds__JointTrajectory_& message, const std::vector<HeldJoint>& held);
+[[nodiscard]] std::variant<JointTrajectory, std::string> motion_of(std::span<const std::byte> cdr,
+                                                                   CdrBytes bytes,
+                                                                   const Scene& scene,
+                                                                   const InputState& state);
 
 }  // namespace clearance

@@ -38,7 +38,7 @@ OfflineReplay replay_offline(const Cell& cell, const std::filesystem::path& reco
                         .with_sensors = true};
     MoveItChanges moveit(first, [&](Scene& scene) { adapt(options, options.gradients, scene); });
     TickFeed feed(open_input_log(recording, first, log), first.scene,
-                  options.tick_hz.value_or(first.scene.rate_hz));
+                  options.tick_hz.value_or(first.scene.rate_hz), options.also_at);
     return ReplayRun(history, feed, options, {}, log.with_scenes ? &moveit : nullptr).run(on_tick);
   }
   const RecordingOutline outlined = outline(recording);

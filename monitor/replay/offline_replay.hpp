@@ -51,6 +51,8 @@ struct OfflineReplayOptions {
   // ticks. Zero means one tick for each time at which something came. If not set, it is the cell's
   // rate for a bag or a joint log, and 0 for Clearance's own recordings.
   std::optional<double> tick_hz = {};
+  // Further ticks of a bag or a joint log at these times, ns, in ascending order.
+  std::vector<std::int64_t> also_at = {};
   // Topics of joint states of a bag (monitor/recording); empty: all that are named joint_states.
   std::vector<std::string> joint_topics = {};
   // Positions of joints that a bag or joint log does not have, by name, rad or m.

@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "monitor/intake/scene_keeper.hpp"
 
@@ -37,8 +38,13 @@ TickFeed::TickFeed(const std::vector<std::filesystem::path>& files, SceneHistory
       files, options, [this](const RecordedMessage& message) { read_message(message); });
 }
 
-TickFeed::TickFeed(std::unique_ptr<InputLog> log, const Scene& scene, double tick_hz)
-    : log_(std::move(log)), objects_(scene, nullptr), by_report_(false), tick_hz_(tick_hz) {}
+TickFeed::TickFeed(std::unique_ptr<InputLog> log, const Scene& scene, double tick_hz,
+                   std::span<const std::int64_t> also_at)
+    : log_(std::move(log)),
+      objects_(scene, nullptr),
+      by_report_(false),
+      tick_hz_(tick_hz),
+      also_at_(also_at.rbegin(), also_at.rend()) {}
 
 // Recordings with reports are replayed tick by tick as the daemon ran.
 bool TickFeed::next(TickInput& tick) {
@@ -246,23 +252,32 @@ bool TickFeed::next_by_time(TickInput& tick) {
 }
 
 // A tick without a batch is made only while a further batch is known: after the last batch there
-// are no more ticks.
+// are no more ticks but those of also_at_.
 bool TickFeed::next_by_rate(TickInput& tick) {
-  while (waiting_.empty()) {
-    if (!read_one()) return false;
+  while (waiting_.empty() && read_one()) {
   }
-  const std::int64_t next_ns = waiting_.front().log_ns;
+  if (waiting_.empty() && also_at_.empty()) return false;
+  constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
+  const std::int64_t next_ns = waiting_.empty() ? kNever : waiting_.front().log_ns;
   const auto now_at = [this](std::uint64_t number) {
     return began_ns_ + std::llround(static_cast<double>(number) * 1e9 / tick_hz_);
   };
   const bool silent = at_rate_ > 0 && next_ns - last_batch_ns_ > 2 * kSilenceNs &&
                       now_at(at_rate_) - last_batch_ns_ > kSilenceNs;
-  if (at_rate_ == 0 || silent) {
-    began_ns_ = next_ns;
-    at_rate_ = 0;
-    if (silent) ++silences_;
+  const bool begins = at_rate_ == 0 || silent;
+  const std::int64_t at_rate_ns = waiting_.empty() ? kNever : begins ? next_ns : now_at(at_rate_);
+  if (!also_at_.empty() && also_at_.back() < at_rate_ns) {
+    tick.time.now_ns = also_at_.back();
+  } else {
+    if (begins) {
+      began_ns_ = next_ns;
+      at_rate_ = 0;
+      if (silent) ++silences_;
+    }
+    ++at_rate_;
+    tick.time.now_ns = at_rate_ns;
   }
-  tick.time.now_ns = now_at(at_rate_++);
+  while (!also_at_.empty() && also_at_.back() <= tick.time.now_ns) also_at_.pop_back();
   while (read_to_ns() <= tick.time.now_ns && read_one()) {
   }
   use_until_now(tick);

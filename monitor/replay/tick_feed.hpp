@@ -59,8 +59,9 @@ class TickFeed {
   // at each log time. The history must outlive this.
   TickFeed(const std::vector<std::filesystem::path>& files, SceneHistory& history,
            const RecordingOutline& outline, double tick_hz = 0.0);
-  // Reads a log of another program.
-  TickFeed(std::unique_ptr<InputLog> log, const Scene& scene, double tick_hz);
+  // Reads a log of another program. `also_at`: times of further ticks, ns, in ascending order.
+  TickFeed(std::unique_ptr<InputLog> log, const Scene& scene, double tick_hz,
+           std::span<const std::int64_t> also_at = {});
   TickFeed(const TickFeed&) = delete;
   TickFeed& operator=(const TickFeed&) = delete;
 
@@ -114,8 +115,9 @@ class TickFeed {
   std::unique_ptr<OwnBatches> own_;  // null: a log of another program
   std::uint64_t own_revision_ = 0;   // of the scene whose ids it gives to joints
   bool by_report_;
-  double tick_hz_;             // 0: at log times
-  std::int64_t began_ns_ = 0;  // the first tick at that rate
+  double tick_hz_;                     // 0: at log times
+  std::vector<std::int64_t> also_at_;  // those that are left, the last one first
+  std::int64_t began_ns_ = 0;          // the first tick at that rate
   std::int64_t last_batch_ns_ = 0;
   std::uint64_t at_rate_ = 0;  // ticks since then
   CdrDecoder decoder_;

@@ -137,7 +137,7 @@ std::string why_unusable(const PresentPose& pose) {
     case PresentPose::State::kLate:
       return "its last pose is older than its age limit";
     case PresentPose::State::kContradicted:
-      return "its poses contradict each other or the cell";
+      return "its poses contradict each other, the cell or a camera";
     case PresentPose::State::kAbsent:
       return "it is absent";
   }

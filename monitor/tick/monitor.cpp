@@ -213,7 +213,6 @@ const std::array<std::uint64_t, kRejects>& Monitor::rejected_joints(
     std::uint32_t variable) const noexcept {
   return state_->inputs.robots.variables()[variable].input.rejected;
 }
-
 const std::array<std::uint64_t, kRejects>& Monitor::rejected(std::uint32_t object) const noexcept {
   return state_->inputs.objects[object].input.rejected;
 }
@@ -242,7 +241,7 @@ PresentPose Monitor::present_pose(std::uint32_t object) const noexcept {
 PresentPose Monitor::present_link(std::uint32_t robot, std::uint32_t link) const noexcept {
   using enum PresentPose::State;
   const LinkState& state = state_->inputs.robots.links(robot)[link];
-  if (state.contradicted) return {kContradicted};
+  if (state.contradicted || state_->inputs.robots.is_denied(robot)) return {kContradicted};
   if (!state.known) return {kUnknown};
   if (state.late) return {kLate};
   return {kUsable, state.pose};
@@ -251,7 +250,8 @@ PresentPose Monitor::present_link(std::uint32_t robot, std::uint32_t link) const
 PresentJoint Monitor::present_joint(std::uint32_t variable) const noexcept {
   using enum PresentPose::State;
   const InputAge age = joint_age(variable);
-  if (age.contradicted) return {kContradicted};
+  const std::uint32_t robot = state_->scene.variables[variable].robot;
+  if (age.contradicted || state_->inputs.robots.is_denied(robot)) return {kContradicted};
   if (age.age_ns < 0) return {kUnknown};
   if (age.stale) return {kLate};
   const TrackedVariable& joint = state_->inputs.robots.variables()[variable];

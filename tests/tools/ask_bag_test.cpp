@@ -27,9 +27,9 @@ struct PointText {
 };
 
 RosMessage trajectory(std::int64_t log_ns, const std::vector<std::string>& joints,
-                      const std::vector<PointText>& points) {
+                      const std::vector<PointText>& points, std::int64_t stamp_ns = 0) {
   RosCdr cdr;
-  cdr.header(log_ns, "").number(static_cast<std::uint32_t>(joints.size()));
+  cdr.header(stamp_ns, "").number(static_cast<std::uint32_t>(joints.size()));
   for (const std::string& joint : joints) cdr.text(joint);
   cdr.number(static_cast<std::uint32_t>(points.size()));
   for (const PointText& point : points) {
@@ -47,7 +47,7 @@ class AskOfABag : public RunsPrograms {
   void SetUp() override {
     write_text(folder / "scara.urdf", kScaraUrdf);
     write_text(folder / "cell.yaml",
-               "name: bag\nunits: {length: m, angle: rad}\n"
+               "name: bag\nunits: {length: m, angle: rad}\ndefaults: {age_limit_ms: 20000}\n"
                "robots: [{name: arm, urdf: scara.urdf}]\nobjects:\n"
                "  - {name: pin, fixed: true, sphere: {radius: 0.1}, pose: {xyz: [2.3, 0, 0]}}\n"
                "pairs: [{between: [arm, pin]}, {between: [arm, arm]}]\n");
@@ -66,7 +66,8 @@ class AskOfABag : public RunsPrograms {
   std::vector<nlohmann::json> answers;
 };
 
-const JointStateText kRest{{"elbow", "push", "shoulder", "elsewhere"}, {0.0, 0.0, -1.0, 7.0}};
+const JointStateText kRest{
+    {"elbow", "push", "shoulder", "elsewhere"}, {0.0, 0.0, -1.0, 7.0}, {0.0, 0.0, 0.0, 0.0}};
 
 TEST_F(AskOfABag, HoldsTheOtherJointsWhereTheJointStatesHaveThem) {
   ASSERT_EQ(ask({joint_state(kSecondNs, kSecondNs, kRest),
@@ -84,12 +85,13 @@ TEST_F(AskOfABag, HoldsTheOtherJointsWhereTheJointStatesHaveThem) {
 // own.
 TEST_F(AskOfABag, ReadsJointStatesByTheTopicAndThePrefixOfARobot) {
   write_text(folder / "cell.yaml",
-             "name: bag\nunits: {length: m, angle: rad}\n"
+             "name: bag\nunits: {length: m, angle: rad}\ndefaults: {age_limit_ms: 20000}\n"
              "robots: [{name: arm, prefix: left_, urdf: scara.urdf, joint_states: /left/state}]\n"
              "objects:\n"
              "  - {name: pin, fixed: true, sphere: {radius: 0.1}, pose: {xyz: [2.3, 0, 0]}}\n"
              "pairs: [{between: [arm, pin]}, {between: [arm, arm]}]\n");
-  const JointStateText elsewhere{{"left_elbow", "left_push", "left_shoulder"}, {1.0, 0.1, 2.0}};
+  const JointStateText elsewhere{
+      {"left_elbow", "left_push", "left_shoulder"}, {1.0, 0.1, 2.0}, {0.0, 0.0, 0.0}};
   ASSERT_EQ(ask({joint_state(kSecondNs, kSecondNs, kRest, "/left/state"),
                  joint_state(kSecondNs, kSecondNs, elsewhere, "/right/state"),
                  trajectory(2 * kSecondNs, {"left_shoulder"}, {{2.0, {0.6}}})}),
@@ -105,6 +107,67 @@ TEST_F(AskOfABag, BeginsWhereTheJointsAreIfTheFirstPointIsLater) {
   EXPECT_NEAR(answers.at(0)["upper"], 0.15, 1e-6);
   EXPECT_EQ(ask({late}), 1) << "nothing says where it begins";
   EXPECT_TRUE(answers.at(0).contains("error"));
+}
+
+// As the daemon judges them: nothing rests on a joint that it would not use.
+TEST_F(AskOfABag, HasNoInputWhereTheDaemonWouldHaveNone) {
+  const auto reason = [&](const std::vector<RosMessage>& messages) {
+    EXPECT_EQ(ask(messages), 1) << output;
+    return answers.at(0).value("error", "answered");
+  };
+  const auto at = [](double seconds) { return static_cast<std::int64_t>(seconds * 1e9); };
+  const auto elbow = [&](double seconds, double position, double velocity,
+                         const std::string& topic = "/joint_states") {
+    return joint_state(at(seconds), at(seconds),
+                       {{"elbow", "push", "shoulder"}, {position, 0, -1}, {velocity, 0, 0}}, topic);
+  };
+  const auto motion = [&](double seconds) {
+    return trajectory(at(seconds), {"shoulder"}, {{0.0, {-1.0}}, {1.0, {-0.9}}});
+  };
+  EXPECT_EQ(ask({elbow(1, 0, 0), motion(20.9)}), 0) << output;
+  EXPECT_NE(reason({elbow(1, 0, 0), motion(21.1)}).find("older than its age limit"),
+            std::string::npos);
+  EXPECT_NE(reason({elbow(1, 0, 0.5), motion(1.01)}).find("'elbow' moves at 0.5 rad/s"),
+            std::string::npos);
+  EXPECT_NE(reason({elbow(1, 1e7, 0), motion(1.01)}).find("'elbow' unknown"), std::string::npos);
+  EXPECT_NE(reason({motion(1), elbow(1.01, 0, 0)}).find("'elbow' unknown"), std::string::npos)
+      << "what comes later";
+  std::string cell = read_text(path("cell.yaml"));
+  write_text(path("cell.yaml"), cell.replace(cell.find("20000"), 5, "50"));
+  std::vector<RosMessage> two;
+  for (int i = 0; i < 20; ++i) {
+    two.push_back(elbow(1 + 0.01 * i, 0.0, 0.0));
+    two.push_back(elbow(1.005 + 0.01 * i, 1.5, 0.0, "/other/joint_states"));
+  }
+  two.push_back(motion(1.2));
+  EXPECT_NE(reason(two).find("'elbow' contradicted"), std::string::npos);
+  EXPECT_EQ(ask({trajectory(at(1), {"shoulder", "elbow", "push"},
+                            {{0.0, {-1.0, 0.0, 0.0}}, {1.0, {-0.9, 0.0, 0.0}}})}),
+            0)
+      << "a motion of all joints needs no other input: " << output;
+}
+
+// The finger is at rest 1 m from the cart, which comes nearer by 0.1 m/s.
+TEST_F(AskOfABag, AStampAheadDelaysAMotionAndIsRefusedBeyondTheAgeLimit) {
+  write_text(folder / "cell.yaml",
+             "name: bag\nunits: {length: m, angle: rad}\ndefaults: {age_limit_ms: 5000}\n"
+             "ros2: {world_frame: map}\nrobots: [{name: arm, urdf: scara.urdf}]\nobjects:\n"
+             "  - {name: cart, frame: cart_link, may_jump: true, max_speed: 0.1, sphere: {radius: "
+             "0.1}}\npairs: [{between: [arm, cart]}]\n");
+  const auto lower = [&](std::int64_t stamp_ns) {
+    const JointStateText rest{{"elbow", "push", "shoulder"}, {0.0, 0.0, 0.0}, {0.0, 0.0, 0.0}};
+    ask({joint_state(kSecondNs, kSecondNs, rest),
+         transforms(kSecondNs, kSecondNs, {{"map", "cart_link", {3.15, 0.0, 0.0}}}),
+         trajectory(kSecondNs, {"shoulder"}, {{0.0, {0.0}}, {1.0, {0.0}}}, stamp_ns)});
+    return answers.at(0);
+  };
+  EXPECT_NEAR(lower(0)["lower"], 1.0 - 0.1, 1e-3);
+  EXPECT_NEAR(lower(kSecondNs)["lower"], 1.0 - 0.1, 1e-3);
+  EXPECT_NEAR(lower(kSecondNs / 2)["lower"], 1.0 - 0.1, 1e-3) << "in the past";
+  EXPECT_NEAR(lower(5 * kSecondNs)["lower"], 1.0 - 0.5, 1e-3);
+  EXPECT_NE(lower(7 * kSecondNs).value("error", "").find("header.stamp 6.000 s ahead"),
+            std::string::npos)
+      << answers.at(0);
 }
 
 TEST_F(AskOfABag, TakesVelocitiesAndRefusesAccelerations) {

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdint>
 #include <limits>
 #include <map>
 #include <string>
@@ -31,8 +32,11 @@ class RosTrajectories {
     return eventually([this] { return matched_readers(writer_) > 0; });
   }
   // The joint moves to these positions, at whole seconds from `first` on.
-  void send(const std::string& joint, int first, const std::vector<double>& positions) {
+  void send(const std::string& joint, int first, const std::vector<double>& positions,
+            std::int64_t stamp_ns) {
     Sample<trajectory_msgs_msg_dds__JointTrajectory_> message;
+    message->header.stamp.sec = static_cast<std::int32_t>(stamp_ns / 1'000'000'000);
+    message->header.stamp.nanosec = static_cast<std::uint32_t>(stamp_ns % 1'000'000'000);
     message->header.frame_id = dds_string_dup("");
     reserve_sequence(message->joint_names, 1);
     message->joint_names._buffer[message->joint_names._length++] = dds_string_dup(joint.c_str());
@@ -67,11 +71,12 @@ class DaemonTrajectories : public WatchedDaemon {
     number = client.ros_reader(kRosFloat64, "rt" + kTopic + "/clearance");
   }
   // Sends the motion once, and joint states until both answers have come.
-  void ask(const std::string& joint, int first, const std::vector<double>& positions) {
+  void ask(const std::string& joint, int first, const std::vector<double>& positions,
+           std::int64_t stamp_ns = 0) {
     Sample<diagnostic_msgs_msg_dds__DiagnosticArray_> message;
     std_msgs_msg_dds__Float64_ value{};
     bool has_status = false, has_number = false;
-    trajectories.send(joint, first, positions);
+    trajectories.send(joint, first, positions, stamp_ns);
     ASSERT_TRUE(step_until(
         kPeriodMs, [&] { send_joints(); },
         [&] {
@@ -135,6 +140,18 @@ TEST_F(DaemonTrajectories, BeginWhereTheJointsAre) {
   EXPECT_EQ(values["margin 0.2 m"], "below");
   EXPECT_NE(text.find("finger"), std::string::npos) << text;
   EXPECT_NEAR(lower, 0.15, 1.1e-3);
+}
+
+// The age limit of the joints is 20 s.
+TEST_F(DaemonTrajectories, AreRefusedIfTheyBeginTooFarAhead) {
+  start();
+  wait_for_joints();
+  ask("shoulder", 0, {-1.0, 0.6}, dds_time() + 60'000'000'000);
+  EXPECT_EQ(level, 2);
+  EXPECT_NE(text.find("header.stamp"), std::string::npos) << text;
+  EXPECT_EQ(lower, -std::numeric_limits<double>::infinity());
+  ask("shoulder", 0, {-1.0, 0.6}, dds_time() - 60'000'000'000);
+  EXPECT_EQ(level, 0) << text;
 }
 
 TEST_F(DaemonTrajectories, AreNeverFreeWhenNothingIsKnown) {

@@ -67,6 +67,25 @@ std::string cubes(const std::string& id, double x, const std::string& turn = "0,
   return out.str();
 }
 
+TEST_F(DistanceTool, RefusesKeysOfABodyThatItDoesNotReadAndKeysThatStandTwice) {
+  const auto error = [&](const std::string& body) {
+    const Outcome r = run("--cases - --out -", R"({"id":1,"a":)" + body + R"(,"b":)" + kCube +
+                                                   R"(,"pose_a":{"xyz":[0,0,0]},)"
+                                                   R"("pose_b":{"xyz":[3,0,0]}})" +
+                                                   "\n");
+    return r.lines.at(0).value("error", "");
+  };
+  EXPECT_EQ(error(R"({"vertices":[[0,0,0]],"radius":0.5})"), "");
+  EXPECT_NE(error(R"({"vertices":[[0,0,0]],"raduis":0.5})").find("did you mean 'radius'?"),
+            std::string::npos);
+  EXPECT_NE(error(R"({"cone":{"radius":1,"half_length":1,"height":3}})").find("key 'height'"),
+            std::string::npos);
+  EXPECT_NE(error(R"({"cone":{"radius":1,"half_length":1},"vertices":[]})").find("'vertices'"),
+            std::string::npos);
+  EXPECT_NE(error(R"({"vertices":[[0,0,0]],"radius":0.5,"radius":0})").find("\"radius\" again"),
+            std::string::npos);
+}
+
 TEST_F(DistanceTool, AnswersCasesFromAPipe) {
   const Outcome r = run("--cases - --out -", cubes("first", 1.5) + "\n" + cubes("second", 0.25));
   EXPECT_EQ(r.status, 0) << r.err;

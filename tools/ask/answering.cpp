@@ -14,7 +14,7 @@
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/ask/completion.hpp"
-#include "monitor/ask/robots_of_question.hpp"
+#include "monitor/intake/ros_joint_trajectory.hpp"
 #include "monitor/pairs/kept_near.hpp"
 #include "tools/ask/bag_inputs.hpp"
 #include "tools/ask/motion_json.hpp"
@@ -82,7 +82,7 @@ int Answering::answer_all(std::istream& in, std::ostream& out) {
     if (text.find_first_not_of(" \t\r") == std::string::npos) continue;
     AskedMotion motion{.where = std::to_string(number)};
     try {
-      const nlohmann::json line = nlohmann::json::parse(text);
+      const nlohmann::json line = parse_line(text);
       if (line.contains("id")) motion.id = line["id"];
       motion.question = read_question(line, defaults_);
       motion.place = &place_of(line);
@@ -97,49 +97,37 @@ int Answering::answer_all(std::istream& in, std::ostream& out) {
 }
 
 int Answering::answer_bag(std::ostream& out) {
-  const Cell& cell = places_.at("")->cell;
-  std::string error;
-  if (needs_inputs(cell)) {
-    error = answer_with_inputs(cell, out);
-  } else {
-    error = for_each_motion(cell, options_.motions, [&](const BagMotion& found) {
-      take(asked(found, *places_.at("")), out);
-    });
-  }
-  return conclude(error, "messages of trajectory_msgs/msg/JointTrajectory", out);
-}
-
-AskedMotion Answering::asked(const BagMotion& found, AskedPlace& place) const {
-  AskedMotion motion{.where = found.id, .id = found.id, .place = &place};
-  if (const auto* reason = std::get_if<std::string>(&found.motion)) {
-    motion.error = *reason;
-  } else {
-    motion.question = question_of(found, motion.scene());
-  }
-  return motion;
-}
-
-std::string Answering::answer_with_inputs(const Cell& cell, std::ostream& out) {
   std::vector<BagMotion> motions;
-  std::string error = for_each_motion(cell, options_.motions,
-                                      [&](const BagMotion& found) { motions.push_back(found); });
-  if (!error.empty() || motions.empty()) return error;
+  const std::string damage = read_motions(options_.motions, motions);
+  const std::string error = answer(motions, out);
+  return conclude(damage.empty() ? error : damage,
+                  "messages of trajectory_msgs/msg/JointTrajectory", out);
+}
+
+std::string Answering::answer(const std::vector<BagMotion>& motions, std::ostream& out) {
+  if (motions.empty()) return "";
   std::size_t done = 0;
-  error =
-      for_each_inputs(cell, options_.motions, motions, [&](std::size_t i, InputsOfMotion inputs) {
-        AskedMotion motion = asked(motions[i], place_of(inputs.cell));
-        if (motion.error.empty()) {
+  const auto take_next = [&](AskedPlace& place) -> AskedMotion {
+    const std::string& id = motions[done++].id;
+    return {.where = id, .id = id, .place = &place, .question = defaults_};
+  };
+  const std::string error = for_each_inputs(
+      places_.at("")->cell, options_.motions, motions, [&](std::size_t i, InputsOfMotion inputs) {
+        AskedMotion motion = take_next(place_of(inputs.cell));
+        auto made = motion_of(motions[i].cdr, CdrBytes::kUnchecked, motion.scene(), inputs.state);
+        if (auto* const reason = std::get_if<std::string>(&made)) {
+          motion.error = std::move(*reason);
+        } else {
+          motion.question.motion = std::get<JointTrajectory>(std::move(made));
           motion.error =
               complete(motion.scene(), inputs.state, std::move(inputs.frames), motion.question)
                   .value_or("");
         }
         take(std::move(motion), out);
-        done = i + 1;
       });
-  for (; done < motions.size(); ++done) {
-    AskedMotion motion = asked(motions[done], *places_.at(""));
-    if (motion.error.empty())
-      motion.error = "the bag has no inputs at or after this motion; expected some";
+  while (done < motions.size()) {
+    AskedMotion motion = take_next(*places_.at(""));
+    motion.error = "the bag has no inputs at or after this motion; expected some";
     take(std::move(motion), out);
   }
   return error;
@@ -264,22 +252,6 @@ AskedPlace& Answering::place_of(const nlohmann::json& motion) {
     throw BadLine("the cell " + file.string() + " cannot be read");
   }
   return *places_.at(scene);
-}
-
-Question Answering::question_of(const BagMotion& motion, const Scene& scene) const {
-  Question question = defaults_;
-  question.motion = std::get<JointTrajectory>(motion.motion);
-  const std::vector<bool> is_of_question = robots_of_question(scene, question);
-  for (const StatedJoint& joint : motion.joints) {
-    const auto found = std::ranges::find(scene.variables, joint.name, &JointVariable::name);
-    if (found == scene.variables.end()) continue;
-    if (is_of_question[found->robot]) {
-      question.held.push_back({joint.name, joint.position});
-    } else {
-      question.joints.push_back(joint);
-    }
-  }
-  return question;
 }
 
 void Answering::expect(AskedMotion& motion) {

@@ -42,15 +42,14 @@ class Answering {
   [[nodiscard]] std::string begin_report();
   // A motion a line. Both return the exit status.
   int answer_all(std::istream& in, std::ostream& out);
-  // The motions of a bag. Where the cell has moving objects or sensors, the bag is read twice.
+  // The motions of a bag, which is read twice.
   int answer_bag(std::ostream& out);
 
  private:
   // Several threads answer so many motions each at a time.
   static constexpr std::size_t kWaitingForThread = 256;
 
-  AskedMotion asked(const BagMotion& found, AskedPlace& place) const;
-  std::string answer_with_inputs(const Cell& cell, std::ostream& out);
+  std::string answer(const std::vector<BagMotion>& motions, std::ostream& out);
   // The bag may change the cell.
   AskedPlace& place_of(const Cell& cell);
   // One thread answers each motion at once; with several of them it may wait.
@@ -63,8 +62,6 @@ class Answering {
   int conclude(std::string error, const std::string& expected, std::ostream& out);
   bool add(const std::string& scene, const std::filesystem::path& file);
   AskedPlace& place_of(const nlohmann::json& motion);
-  // A bag has joint states of robots that the cell does not have, too.
-  [[nodiscard]] Question question_of(const BagMotion& motion, const Scene& scene) const;
   // The expected distance is the last of the margins of all pairs.
   void expect(AskedMotion& motion);
   void summarise();

@@ -45,10 +45,6 @@ class Frames {
 
 }  // namespace
 
-bool needs_inputs(const Cell& cell) {
-  return cell.ros.moveit.any() || !room_for_inputs(cell.scene).objects.empty();
-}
-
 std::string for_each_inputs(const Cell& cell, const std::filesystem::path& bag,
                             std::span<const BagMotion> motions, const UseInputs& use) {
   std::size_t next = 0;
@@ -56,6 +52,7 @@ std::string for_each_inputs(const Cell& cell, const std::filesystem::path& bag,
   InputState state;
   Frames frames;
   OfflineReplayOptions options;
+  for (const BagMotion& motion : motions) options.also_at.push_back(motion.log_ns);
   options.stop = [&] { return next == motions.size(); };
   const OfflineReplay replay = replay_offline(cell, bag, options, [&](const ReplayedTick& tick) {
     const Scene& scene = tick.cell.scene;
@@ -72,7 +69,7 @@ std::string for_each_inputs(const Cell& cell, const std::filesystem::path& bag,
     for (; next < motions.size() && motions[next].log_ns <= tick.report.now_ns; ++next)
       use(next, {tick.cell, state, seen});
   });
-  return replay.error.empty() ? replay.damage : replay.error;
+  return replay.error;
 }
 
 }  // namespace clearance

@@ -20,6 +20,23 @@ namespace {
 using Json = nlohmann::json;
 using OrderedJson = nlohmann::ordered_json;
 
+// The keys of a trajectory.
+const std::vector<std::string> kTrajectoryKeys = {"joints", "times_s", "positions", "velocities"};
+
+// A motion has those, and these. The last ones describe it to people and say what is true of it.
+std::vector<std::string> keys_of_a_motion() {
+  std::vector<std::string> keys = kTrajectoryKeys;
+  for (const char* key : {"id",           "scene",       "held",        "joints_of_others",
+                          "poses",        "turn_speeds", "margins",     "beside",
+                          "moving",       "payloads",    "contacts",    "profile",
+                          "time_scaling", "stoppable",   "others",      "kind",
+                          "how",          "what",        "nominal",     "recording",
+                          "robot",        "least",       "first_below", "evals",
+                          "gap"})
+    keys.emplace_back(key);
+  return keys;
+}
+
 std::vector<double> rows_of(const Json& line, const char* key, std::size_t columns) {
   std::vector<double> numbers;
   for (const Json& row : line.at(key)) {
@@ -44,6 +61,7 @@ JointTrajectory trajectory_of(const Json& line) {
 }
 
 ObjectMotion object_motion_of(const std::string& object, const Json& entry) {
+  refuse_unknown_keys(entry, {"times_s", "poses"}, "a motion of an object");
   ObjectMotion motion{.object = object,
                       .times = entry.at("times_s").get<std::vector<double>>(),
                       .world_from_object = {}};
@@ -55,6 +73,11 @@ ObjectMotion object_motion_of(const std::string& object, const Json& entry) {
 }
 
 std::optional<ConvexBody> shape_of(const Json& entry) {
+  if (entry.count("box") + entry.count("sphere") + entry.count("cylinder") +
+          entry.count("vertices") >
+      1) {
+    throw BadLine("a payload has several shapes; expected one of them");
+  }
   ShapeResult made = ShapeError{};
   if (entry.contains("box")) {
     const auto size = entry["box"].get<std::array<double, 3>>();
@@ -81,6 +104,9 @@ std::optional<ConvexBody> shape_of(const Json& entry) {
 }
 
 Payload payload_of(const Json& entry) {
+  refuse_unknown_keys(entry,
+                      {"name", "link", "pose", "touch", "box", "sphere", "cylinder", "vertices"},
+                      "a payload");
   Payload payload;
   payload.name = entry.at("name").get<std::string>();
   payload.link = entry.at("link").get<std::string>();
@@ -92,6 +118,7 @@ Payload payload_of(const Json& entry) {
 }
 
 MeantContact contact_of(const Json& entry) {
+  refuse_unknown_keys(entry, {"pair", "depth", "until", "distance"}, "a contact");
   const auto pair = entry.at("pair").get<std::array<std::string, 2>>();
   return {.first = pair[0],
           .second = pair[1],
@@ -104,6 +131,7 @@ std::optional<ProfileRequest> profile_of(const Json& entry) {
   if (entry.is_boolean()) {
     return entry.get<bool>() ? std::optional(ProfileRequest()) : std::nullopt;
   }
+  refuse_unknown_keys(entry, {"pair", "tolerance", "points"}, "a profile");
   ProfileRequest profile;
   if (entry.contains("pair")) {
     const auto pair = entry["pair"].get<std::array<std::string, 2>>();
@@ -171,9 +199,11 @@ void read_margins(const Json& margins, Question& question) {
       question.margins.push_back(margin.get<double>());
       continue;
     }
+    const bool is_of_zone = margin.contains("zone");
+    refuse_unknown_keys(margin, {is_of_zone ? "zone" : "between", "m"}, "a margin");
     MarginBetween& of = question.margins_between.emplace_back();
     of.margin = margin.at("m").get<double>();
-    if (margin.contains("zone")) {
+    if (is_of_zone) {
       of.a = margin["zone"].get<std::string>();
     } else {
       const auto sides = margin.at("between").get<std::array<std::string, 2>>();
@@ -192,7 +222,8 @@ std::string margin_text(const Question& question, std::size_t place) {
 }
 
 Question read_question(const Json& line, const Question& defaults) {
-  if (!line.is_object()) throw BadLine("the line is not a JSON object");
+  static const std::vector<std::string> kKeys = keys_of_a_motion();
+  refuse_unknown_keys(line, kKeys, "the motion");
   Question question = defaults;
   question.motion = trajectory_of(line);
   if (line.contains("held")) {
@@ -227,7 +258,10 @@ Question read_question(const Json& line, const Question& defaults) {
     }
   }
   if (line.contains("beside")) {
-    for (const Json& motion : line["beside"]) question.beside.push_back(trajectory_of(motion));
+    for (const Json& motion : line["beside"]) {
+      refuse_unknown_keys(motion, kTrajectoryKeys, "a motion beside");
+      question.beside.push_back(trajectory_of(motion));
+    }
   }
   if (line.contains("moving")) {
     for (const auto& [name, motion] : line["moving"].items()) {

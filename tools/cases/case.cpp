@@ -2,10 +2,14 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <variant>
 
+#include "config/text/sentences.hpp"
+#include "config/text/spelling.hpp"
 #include "core/shapes.hpp"
 
 namespace clearance {
@@ -20,6 +24,29 @@ std::string shown(const Json& value) {
 }
 
 }  // namespace
+
+// The parser keeps the last of two values of one key, so that the first would be hidden.
+Json parse_line(const std::string& text) {
+  std::vector<std::set<std::string>> keys;  // of the objects around the present place
+  return Json::parse(text, [&](int, Json::parse_event_t event, Json& parsed) {
+    if (event == Json::parse_event_t::object_start) keys.emplace_back();
+    if (event == Json::parse_event_t::object_end) keys.pop_back();
+    if (event != Json::parse_event_t::key) return true;
+    if (!keys.back().insert(parsed.get<std::string>()).second)
+      throw BadLine(fmt::format("found the key {} again; expected it once", shown(parsed)));
+    return true;
+  });
+}
+
+void refuse_unknown_keys(const Json& object, const std::vector<std::string>& known,
+                         const std::string& what) {
+  if (!object.is_object()) throw BadLine(fmt::format("{} is not a JSON object", what));
+  for (const auto& [key, value] : object.items()) {
+    if (std::ranges::find(known, key) != known.end()) continue;
+    throw BadLine(fmt::format("found the unknown key '{}' in {}; expected {}{}", key, what,
+                              one_of(known), did_you_mean(key, known)));
+  }
+}
 
 const Json& member(const Json& object, const char* key, const std::string& where) {
   if (!object.is_object()) throw BadLine(fmt::format("{} is not a JSON object", where));
@@ -105,7 +132,7 @@ ShapeResult shape_of_vertices(const Json& list, const std::string& where, double
 }  // namespace
 
 ConvexBody read_body(const Json& body, const std::string& where) {
-  if (!body.is_object()) throw BadLine(fmt::format("{} is not a JSON object", where));
+  refuse_unknown_keys(body, {"halfspaces", "vertices", "radius"}, where);
   double radius = 0.0;
   if (const auto found = body.find("radius"); found != body.end() && !found->is_null()) {
     if (!found->is_number() || !(found->get<double>() >= 0.0) ||

@@ -25,6 +25,15 @@ struct DistanceCase {
   bool motion = false;
 };
 
+// Reads a line of JSON. Throws BadLine for a key that stands twice in an object, and
+// nlohmann::json::exception for what is no JSON.
+[[nodiscard]] nlohmann::json parse_line(const std::string& text);
+
+// Throws BadLine for what is no object, and for a key that is not known. `what` names the object:
+// "a payload".
+void refuse_unknown_keys(const nlohmann::json& object, const std::vector<std::string>& known,
+                         const std::string& what);
+
 // Read parts of a line. `where` names the place ("pose_a") for the message. All throw BadLine.
 [[nodiscard]] const nlohmann::json& member(const nlohmann::json& object, const char* key,
                                            const std::string& where);

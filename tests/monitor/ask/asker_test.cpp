@@ -153,6 +153,31 @@ TEST(Asker, TakesAWaypointThatIsStatedTwice) {
   EXPECT_EQ(answered(scene, question).lower, once.lower);
 }
 
+// The jerk of the first steps is more than a double holds. Its bounds were no numbers once, and the
+// pin was free.
+TEST(Asker, RefusesAStepTooShortForItsCubicAndBoundsOneThatIsLonger) {
+  const Scene scene = scara_beside(kPin);
+  for (const double step : {5e-324, 1e-110, 1e-103, 1e-21, 1e-20, 1e-19, 1e-12}) {
+    for (const bool is_cubic : {true, false}) {
+      Question question = swing(0.0, 1.0);
+      question.motion.times = {0.0, step, 1.0};
+      question.motion.positions = {0.0, 1.0, 2.0};
+      if (is_cubic) question.motion.velocities = {0.0, 0.0, 0.0};
+      question.margins_between = {{"arm", "post", 3.0}};
+      const auto found = ask(scene, question);
+      ASSERT_EQ(std::holds_alternative<std::string>(found), step < 1e-20) << step;
+      if (step < 1e-20) {
+        EXPECT_NE(std::get<std::string>(found).find("waypoint 1 is less than 1e-20 s after"),
+                  std::string::npos);
+        continue;
+      }
+      const Answer& answer = std::get<Answer>(found);
+      EXPECT_LE(answer.lower, 0.15 + 1e-9) << "at its first waypoint";
+      EXPECT_EQ(answer.margins.back().verdict, Verdict::kBelow) << step;
+    }
+  }
+}
+
 TEST(Asker, OnlyVerdictsAreThoseOfTheWholeAnswer) {
   const Scene scene = scara_beside(kPin);
   for (const double margin : {0.0, 0.1, 0.149, 0.151, 0.3}) {

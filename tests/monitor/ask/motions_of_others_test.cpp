@@ -57,6 +57,21 @@ TEST(MotionsOfOthers, AMotionBesideIsThatOfOneWithAllWaypoints) {
   EXPECT_NEAR(a.upper, b.upper, 1e-7);
 }
 
+TEST(MotionsOfOthers, AMotionOfAnObjectTakesNoStepThatIsTooShort) {
+  Question question = swing(0.0, 0.0);
+  const auto ask_with = [&](double step) {
+    question.moving = {
+        {.object = "post",
+         .times = {0.0, step},
+         .world_from_object = {{.position = {2.4, -1.0, 0.0}}, {.position = {2.4, 1.0, 0.0}}}}};
+    return ask(scara_beside(kBall), question);
+  };
+  EXPECT_TRUE(std::holds_alternative<std::string>(ask_with(1e-110)));
+  const auto passed = ask_with(1e-19);
+  ASSERT_TRUE(std::holds_alternative<Answer>(passed));
+  EXPECT_LE(std::get<Answer>(passed).lower, 0.25 + 1e-9);
+}
+
 TEST(MotionsOfOthers, APoseAndAMotionOfOneObjectAreRefused) {
   Question question = swing(0.0, 0.0);
   question.poses = {{.object = "post", .world_from_object = {}}};

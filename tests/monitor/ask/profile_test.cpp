@@ -1,5 +1,8 @@
 // Oracles: the closed form of a distance over time, and the equations of S_p.
 #include <cmath>
+#include <string>
+#include <variant>
+#include <vector>
 
 #include "tests/monitor/ask/scara_questions.hpp"
 
@@ -82,6 +85,72 @@ TEST(TimeScaling, IsRefusedIfAZoneMeasuresItsReaction) {
   EXPECT_TRUE(std::holds_alternative<Answer>(ask(scene, question)));
   question.time_scaling = true;
   EXPECT_TRUE(std::holds_alternative<std::string>(ask(scene, question)));
+}
+
+// A person whose limbs move, and an arm: a zone limits the arm, wherever it stands in the cell.
+TEST(TimeScaling, DoesNotDependOnTheOrderOfRobots) {
+  const std::string arm = "  - {name: arm, urdf: scara.urdf}\n",
+                    person =
+                        "  - {name: p, person: {stature: 1.75, error: 0.1}, groups: [people], "
+                        "base: {pose: {xyz: [3.2, 0, 0]}}}\n";
+  const test::ScratchFolder folder;
+  test::write_text(folder / "scara.urdf", test::kScaraUrdf);
+  std::vector<TimeScaling> found;
+  for (const std::string& robots : {arm + person, person + arm}) {
+    const Scene scene = scene_of(
+        "name: test\nunits: {length: m, angle: rad}\nrobots:\n" + robots +
+            "pairs: [{between: [arm, people]}]\nzones:\n  - {name: z, between: [arm, people], "
+            "enter_below: 0.01, leave_above: 0.02, separation: {human: people, human_speed: 0.1, "
+            "reaction_time_ms: 100, stopping_time_ms: 100, stopping_distance: 0.05, "
+            "intrusion_distance: 0}}\n",
+        folder / "cell.yaml");
+    Question question = swing(-1.0, 0.6);
+    question.others = OthersMove::kNot;
+    question.time_scaling = true;
+    question.held.clear();
+    for (const JointVariable& variable : scene.variables)
+      if (variable.name != "shoulder") question.held.push_back({variable.name, 0.0});
+    found.push_back(answered(scene, question).scaling);
+    EXPECT_TRUE(found.back().is_limited);
+    EXPECT_LT(found.back().factor_above, kInfinity);
+  }
+  const double tolerance = Question().scaling_tolerance;
+  EXPECT_NEAR(found[0].factor, found[1].factor, 2.0 * tolerance * found[0].factor);
+  EXPECT_LE(found[0].factor, found[1].factor_above);
+  EXPECT_LE(found[1].factor, found[0].factor_above);
+}
+
+// Neither of two links is the tip of a chain and its base at once.
+TEST(TimeScaling, IsRefusedIfEachOfTwoLinksIsTheHumanOfTheOther) {
+  const test::ScratchFolder folder;
+  test::write_text(folder / "scara.urdf", test::kScaraUrdf);
+  const auto zone = [](const std::string& name, const std::string& human) {
+    return "  - {name: " + name +
+           ", between: [a, b], enter_below: 0.01, leave_above: 0.02, "
+           "separation: {human: " +
+           human +
+           ", human_speed: 0.1, reaction_time_ms: 100, stopping_time_ms: 100, stopping_distance: "
+           "0.05, intrusion_distance: 0}}\n";
+  };
+  const auto ask_with = [&](const std::string& zones) {
+    const Scene scene = scene_of(
+        "name: test\nunits: {length: m, angle: rad}\nrobots:\n"
+        "  - {name: a, prefix: a_, urdf: scara.urdf}\n"
+        "  - {name: b, prefix: b_, urdf: scara.urdf, base: {pose: {xyz: [6, 0, 0]}}}\n"
+        "pairs: [{between: [a, b]}]\nzones:\n" +
+            zones,
+        folder / "cell.yaml");
+    Question question = swing(-1.0, 0.6);
+    question.motion.joints = {"a_shoulder"};
+    question.held = {
+        {"a_elbow", 0.0}, {"a_push", 0.0}, {"b_shoulder", 0.0}, {"b_elbow", 0.0}, {"b_push", 0.0}};
+    question.others = OthersMove::kNot;
+    question.time_scaling = true;
+    return ask(scene, question);
+  };
+  EXPECT_TRUE(std::holds_alternative<Answer>(ask_with(zone("one", "a"))));
+  EXPECT_TRUE(std::holds_alternative<Answer>(ask_with(zone("one", "b"))));
+  EXPECT_TRUE(std::holds_alternative<std::string>(ask_with(zone("one", "a") + zone("two", "b"))));
 }
 
 TEST(TimeScaling, HasNoLimitWithoutSuchAZone) {
