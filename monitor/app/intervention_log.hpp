@@ -25,10 +25,10 @@ class InterventionError : public std::runtime_error {
 };
 
 // A thread of its own writes the lines, so that no other waits for the disk. Lines that find kMost
-// others waiting are left out, but for the last one, and the next line counts them. If the disk is full, the thread
-// tries again each second. A file that another program has changed, moved or deleted gets no more
-// lines. One that has grown large is renamed (files/numbered_file.hpp), and its successor begins
-// with a line that holds the hash of its last one.
+// others waiting are left out, but for the last one, and the next line counts them. If the disk is
+// full, the thread tries again each second. A file that another program has changed, moved or
+// deleted gets no more lines. One that has grown large is renamed (files/numbered_file.hpp), and
+// its successor begins with a line that holds the hash of its last one.
 //
 // While it lives, log lines that tell of an intervention (is_intervention()) go into it, too.
 class InterventionLog {
