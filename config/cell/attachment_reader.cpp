@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "config/scene/chain_rounding.hpp"
+#include "config/scene/attached.hpp"
 #include "config/scene/people.hpp"
 #include "config/scene/rigid_root.hpp"
 #include "config/text/spelling.hpp"
@@ -53,7 +53,6 @@ class AttachmentReader {
   void attach(StatedAttachment& stated);
   bool attach_carrier(const YamlNode& node, const std::string& name);
   std::optional<Carrier> carrier(const YamlNode& node);
-  void be_carried(const Carrier& carrier, Object& object);
   void refuse_speed(const StatedAttachment& stated, const RigidRoot& root);
   void leave_out_touching();
   void leave_out_rigid();
@@ -137,31 +136,6 @@ std::optional<AttachmentReader::Carrier> AttachmentReader::carrier(const YamlNod
   return std::nullopt;
 }
 
-void AttachmentReader::be_carried(const Carrier& carrier, Object& object) {
-  std::vector<std::string> groups;
-  if (carrier.object) {
-    const Object& by = list_.objects[*carrier.object];
-    groups = by.groups;
-    object.absent = object.absent || by.absent;
-    object.age_limit_ns = by.age_limit_ns;
-    object.may_jump = by.may_jump;
-  } else {
-    // A link without shapes has what the others of its robot have.
-    const Robot& robot = robots_.robots[*carrier.robot];
-    const auto shaped = std::ranges::find_if(
-        robot.links, [](const RobotLink& link) { return link.object != RobotLink::kNoObject; });
-    groups = {robot.name};
-    if (shaped != robot.links.end()) {
-      groups = list_.objects[shaped->object].groups;
-      object.absent = object.absent || list_.objects[shaped->object].absent;
-    }
-  }
-  for (const std::string& group : groups) {
-    if (std::ranges::find(object.groups, group) == object.groups.end())
-      object.groups.push_back(group);
-  }
-}
-
 // While the pose of an object is late, it is within max_speed times its age. Positions of joints
 // have different ages, so a speed of the link would bound nothing.
 void AttachmentReader::refuse_speed(const StatedAttachment& stated, const RigidRoot& root) {
@@ -186,7 +160,11 @@ void AttachmentReader::attach(StatedAttachment& stated) {
   attached_.push_back(index);
   RobotBase base;
   if (found) {
-    be_carried(*found, object);
+    if (found->object) {
+      take_over(list_.objects[*found->object], object);
+    } else {
+      take_over(robots_.robots[*found->robot], list_.objects, object);
+    }
     base = found->base;
     base.base_from_root = compose(base.base_from_root, pose);
     if (found->object) list_.attachments.push_back({index, *found->object});
@@ -203,17 +181,9 @@ void AttachmentReader::attach(StatedAttachment& stated) {
     }
     list_.objects.push_back(std::move(object));
   } else {
-    Robot robot;
-    robot.name = object.name;
-    robot.is_attached = true;
-    robot.base = base;
-    robot.links = {{object.name, index}};
-    robots_.robots.push_back(std::move(robot));
+    be_carried(base, index, robots_.robots, robots_.variables, object);
     const auto last = static_cast<std::uint32_t>(robots_.robots.size() - 1);
-    const RigidRoot root = root_of_link(robots_.robots, last, 0);
-    refuse_speed(stated, root);
-    if (!root.is_object) object.max_speed = kInfinity;
-    account_for(chain_rounding(robots_.robots, robots_.variables).front(), object);
+    refuse_speed(stated, root_of_link(robots_.robots, last, 0));
     list_.objects.push_back(std::move(object));
     links_.emplace(list_.objects.back().name, std::pair(last, 0));
   }

@@ -51,6 +51,23 @@ void note_mesh_errors(ObjectList& list) {
   }
 }
 
+// With what objects that questions attach need beside the pairs.
+void fill(Scene& scene, ObjectList& list, RobotList& robots, PairList& pairs,
+          const PairExceptions& by_matrices) {
+  const auto note = [&](PairKey key) {
+    scene.may_touch.push_back({first_of(key), second_of(key)});
+  };
+  for (const auto& [key, line] : by_matrices) note(key);
+  for (const PairKey key : list.touching) note(key);
+  scene.rules = std::move(pairs.rules);
+  scene.exceptions = std::move(pairs.exceptions);
+  scene.attachments = std::move(list.attachments);
+  scene.pairs = std::move(pairs.pairs);
+  scene.objects = std::move(list.objects);
+  scene.robots = std::move(robots.robots);
+  scene.variables = std::move(robots.variables);
+}
+
 // The sections of a cell, one function each.
 class CellReader {
  public:
@@ -126,6 +143,7 @@ void CellReader::publish_open(RobotList& robots, const ObjectList& list, PairLis
 void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quantities, Cell& cell) {
   ObjectDefaults defaults;
   if (const YamlNode* node = map.optional("defaults")) defaults = read_defaults(*node, quantities);
+  cell.scene.added_margin = defaults.margin;
   const YamlNode* templates_node = map.optional("templates");
   const YamlNode* robots_node = map.optional("robots");
   const YamlNode* scenes_node = map.optional("scenes");
@@ -163,7 +181,9 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   mount_sensors(robots, list, quantities, sensors);
   errors_ = map.optional("errors");
   if (errors_ != nullptr) read_errors(*errors_, quantities, robots, list, cell.scene);
-  allow_by_matrices(list, robots.may_touch);
+  PairExceptions by_matrices;
+  allow_by_matrices(list, by_matrices);
+  robots.may_touch.insert(robots.may_touch.end(), by_matrices.begin(), by_matrices.end());
   note_mesh_errors(list);
   if (options_.mesh_errors != nullptr) *options_.mesh_errors = std::move(list.mesh_errors);
   refuse_same_names(list, diagnostics_);
@@ -193,11 +213,8 @@ void CellReader::read_objects_and_pairs(MapReader& map, const Quantities& quanti
   if (is_complete) group_index.refuse_unused_groups();
   if (simulation_node != nullptr)
     cell.simulation = read_simulation(*simulation_node, list, quantities);
-  cell.scene.pairs = std::move(pairs.pairs);
-  cell.scene.objects = std::move(list.objects);
+  fill(cell.scene, list, robots, pairs, by_matrices);
   cell.scene.sensors = sensors.sensors;
-  cell.scene.robots = std::move(robots.robots);
-  cell.scene.variables = std::move(robots.variables);
   find_followed(timing_, diagnostics_, cell.scene);
   crop_sensors(sensors, diagnostics_, cell.scene);
 }

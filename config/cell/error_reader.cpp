@@ -16,9 +16,6 @@
 namespace clearance {
 namespace {
 
-// rad: the largest sum over what carries a body. The bounds of second order hold up to here.
-constexpr double kMostAngle = 0.25;
-
 // How an object gets its place.
 enum class Placed { kByJoints, kFixed, kBySender, kAttached, kBySensor };
 
@@ -153,6 +150,7 @@ void ErrorReader::read(const YamlNode& node) {
     state(Placed::kFixed, *fixed);
   if (const auto attached = read_places(map, "attached", "the errors of attached objects")) {
     scene_.attached_error = *attached;
+    for (Object& object : list_.objects) object.attached_error = *attached;
     state(Placed::kAttached, *attached);
   }
   if (const auto mounts = read_places(map, "mounts", "the errors of sensors' mounts"))
@@ -287,7 +285,11 @@ void ErrorReader::read_object_exception(const YamlNode& node, MapReader& map) {
     return;
   }
   PlaceError unused;
-  read_place(map, found ? place_of(*found) : unused);
+  PlaceError& place = found ? place_of(*found) : unused;
+  read_place(map, place);
+  PlaceError& attached = found ? list_.objects[*found].attached_error : unused;
+  if (map.optional("translation") != nullptr) attached.translation = place.translation;
+  if (map.optional("rotation") != nullptr) attached.rotation = place.rotation;
   if (name && !found) refuse_name(node, *name, "an object of the cell", names);
 }
 
@@ -300,14 +302,7 @@ void read_errors(const YamlNode& node, const Quantities& quantities, RobotList& 
 
 void refuse_large_angles(const YamlNode& node, const Scene& scene, Diagnostics& diagnostics) {
   const StatedErrors errors(scene);
-  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
-    const double angle = errors.angle_of(i);
-    if (angle <= kMostAngle) continue;
-    diagnostics.add(node, fmt::format("found angles that add up to {:.3f} rad for '{}'; expected "
-                                      "at most {} rad over all that carries an object",
-                                      angle, scene.objects[i].name, kMostAngle));
-    return;
-  }
+  if (const auto why = errors.too_large_angle(scene)) return diagnostics.add(node, *why);
   double most = 0.0;
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i)
     most = std::max(most, errors.angle_of(i));

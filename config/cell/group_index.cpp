@@ -7,23 +7,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "config/scene/attached.hpp"
 #include "config/text/spelling.hpp"
 
 namespace clearance {
-namespace {
-
-bool is_unbounded(const Object& object) {
-  return !std::ranges::all_of(object.parts, [](const Part& part) { return part.shape.bounded(); });
-}
-
-bool never_meet(const Object& a, const Object& b) {
-  if (a.is_seen() || b.is_seen())
-    return (a.is_seen() && b.is_seen()) || is_unbounded(a) || is_unbounded(b);
-  return a.fixed && b.fixed;
-}
-
-}  // namespace
-
 // Objects are added first: a group with an object's name is then the one that is reported.
 GroupIndex::GroupIndex(const ObjectList& list, Diagnostics& diagnostics)
     : list_(list), diagnostics_(diagnostics) {
@@ -61,12 +48,10 @@ void GroupIndex::declare(const std::string& group, const YamlNode& place, std::s
 
 // A carrier comes before what it carries: what that one carries, too, is added to all carriers.
 void GroupIndex::count_attached() {
-  std::map<std::uint32_t, std::uint32_t> carrier_of;
-  for (const auto& [object, carrier] : list_.attachments) carrier_of[object] = carrier;
+  const std::vector<std::uint32_t> carriers = carriers_of(list_.attachments, list_.objects.size());
   for (const auto& [object, first] : list_.attachments) {
-    for (auto at = carrier_of.find(object); at != carrier_of.end();
-         at = carrier_of.find(at->second)) {
-      const auto found = entries_.find(list_.objects[at->second].name);
+    for (std::uint32_t at = first; at != kNoCarrier; at = carriers[at]) {
+      const auto found = entries_.find(list_.objects[at].name);
       if (found == entries_.end()) break;
       Entry& entry = found->second;
       if (entry.with_attached.empty()) entry.with_attached = entry.objects;

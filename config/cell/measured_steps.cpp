@@ -7,7 +7,7 @@
 #include <set>
 #include <utility>
 
-#include "config/scene/absent_robots.hpp"
+#include "config/scene/attached.hpp"
 #include "config/text/spelling.hpp"
 
 namespace clearance {
@@ -15,7 +15,6 @@ namespace {
 
 constexpr double kFarthest = 1e3;   // m: no arm is as long
 constexpr double kMostReach = 2.0;  // of the largest distance of a link from the axis
-constexpr double kRounding = 1e-9;  // of the sum of a few masses
 
 // The longest that the origin of a joint's child is from that of its parent, m.
 double longest_step(const RobotJoint& joint, std::span<const JointVariable> variables) {
@@ -52,26 +51,6 @@ std::vector<std::size_t> chain_to(const Robot& robot, std::size_t link) {
   chain.resize(length);
   std::ranges::reverse(chain);
   return chain;
-}
-
-// Returns the mass of what stands on a robot, kg. A tool that is absent has none.
-double mass_of(const Robot& robot, const ObjectList& list) {
-  if (robot.is_attached) return list.objects[robot.links.front().object].mass;
-  return is_absent(robot, list.objects) ? 0.0 : robot.mass;
-}
-
-// The mass that a robot carries, kg; nothing: something has none stated.
-std::optional<double> carried(std::uint32_t robot, const RobotList& robots,
-                              const ObjectList& list) {
-  double mass = robots.robots[robot].stopping.load.tool;
-  std::vector<bool> is_on_it(robots.robots.size(), false);
-  is_on_it[robot] = true;
-  for (std::size_t i = robot + 1; i < robots.robots.size(); ++i) {
-    const Robot& of = robots.robots[i];
-    is_on_it[i] = of.base.kind == RobotBase::Kind::kLink && is_on_it[of.base.robot];
-    if (is_on_it[i]) mass += mass_of(of, list);
-  }
-  return std::isfinite(mass) ? std::optional(mass) : std::nullopt;
 }
 
 }  // namespace
@@ -141,29 +120,15 @@ void use_carried_loads(const ObjectList& list, RobotList& robots, Diagnostics& d
     Robot& robot = robots.robots[i];
     RobotStops& stops = robot.stopping;
     if (stops.steps.empty()) continue;
-    if (stops.load.full > 0.0) {
-      const double most = stops.steps.back().load;
-      const auto mass = carried(i, robots, list);
-      const double share = mass ? (1.0 - kRounding) * *mass / stops.load.full : most;
-      const auto step = std::ranges::lower_bound(stops.steps, share, {}, &StopStep::load);
-      if (step == stops.steps.end()) {
-        const auto link = std::ranges::find_if(
-            robot.links, [](const RobotLink& each) { return each.object != RobotLink::kNoObject; });
-        if (link == robot.links.end()) continue;
-        diagnostics.add(*list.places[link->object],
-                        fmt::format("found {:g} kg on the robot '{}', {:.0f} % of its full load; "
-                                    "expected at most {:g} %, the highest step of its stopping "
-                                    "table",
-                                    *mass, robot.name, 100.0 * share, 100.0 * most));
-        continue;
-      }
-      const double chosen = step->load;
-      stops.load.mass = mass.value_or(kInfinity);
-      stops.load.step = chosen;
-      std::erase_if(stops.steps, [&](const StopStep& each) { return each.load != chosen; });
+    if (!(stops.load.full > 0.0)) {
+      stops.joints = stops.steps.back().joints;
+      continue;
     }
-    stops.joints = stops.steps.back().joints;
-    if (!(stops.extension.reach > 0.0)) stops.steps.clear();
+    stops.load.steps = std::move(stops.steps);
+    const auto why = choose_steps(i, list.objects, robots.robots);
+    const auto link = std::ranges::find_if(
+        robot.links, [](const RobotLink& each) { return each.object != RobotLink::kNoObject; });
+    if (why && link != robot.links.end()) diagnostics.add(*list.places[link->object], *why);
   }
 }
 

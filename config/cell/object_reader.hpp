@@ -47,11 +47,6 @@ struct StatedAttachment {
   const YamlNode* max_speed;  // null: not stated
 };
 
-// An attached object of the list, and the object that carries it, which may be attached, too.
-struct Attachment {
-  std::uint32_t object, carrier;
-};
-
 // Objects with their places in the file, at which later sections report mistakes.
 struct ObjectList {
   std::vector<Object> objects;

@@ -54,6 +54,7 @@ class PairReader {
   // Sorted by key once the rules have been read.
   std::vector<Candidate> candidates_;
   std::vector<bool> without_motion_;  // by object: named by a rule that watches others of its group
+  std::vector<NamedPair> rules_, exceptions_;
   // False after a rule that could not be read.
   bool complete_ = true;
 };
@@ -73,6 +74,7 @@ void PairReader::read_rule(const YamlNode& node) {
     complete_ = false;
     return;
   }
+  rules_.push_back({between->names[0], between->names[1]});
   const std::vector<PairKey> keys = group_index_.pairs(*between);
   if (keys.empty() && !between->may_be_empty) {
     diagnostics_.add(node, fmt::format("found no pair between '{}' and '{}'; expected at least two "
@@ -183,6 +185,7 @@ void PairReader::read_exception(const YamlNode& node) {
     }
   }
   if (!between) return;
+  exceptions_.push_back({between->names[0], between->names[1]});
   const std::vector<PairKey> keys = group_index_.pairs(*between);
   bool removed = false;
   for (const PairKey key : keys) {
@@ -213,6 +216,8 @@ void PairReader::read_exceptions(const YamlNode& node) {
 PairList PairReader::finish(const YamlNode& rules) {
   PairList list;
   list.complete = complete_;
+  list.rules = std::move(rules_);
+  list.exceptions = std::move(exceptions_);
   std::size_t published = 0;
   for (const Candidate& candidate : candidates_) {
     if (candidate.allowed_line != 0) {

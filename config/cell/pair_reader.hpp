@@ -18,6 +18,7 @@ struct PairList {
   std::vector<PairKey> allowed;   // ascending: pairs that an exception removed
   // Ascending: pairs of rules that do not state `publish`, which are not published yet.
   std::vector<std::uint32_t> open = {};
+  std::vector<NamedPair> rules = {}, exceptions = {};  // as in Scene
   bool complete = true;  // false: a rule could not be read, and its pairs are missing
 };
 

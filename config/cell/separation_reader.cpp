@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "config/scene/attached.hpp"
 #include "config/scene/people.hpp"
 #include "config/text/sentences.hpp"
 
@@ -138,14 +139,12 @@ Separation read_separation(const YamlNode& node, const Between& between, const Z
   Separation separation = reader.read();
   reader.refuse_unknown_keys();
   if (!side) return separation;
+  separation.human_is_a = *side == 0;
   const std::vector<std::uint32_t>&people = *between.objects[*side],
         &robots = *between.objects[1 - *side];
   for (const std::uint32_t person : people) {
     if (!std::ranges::binary_search(robots, person)) continue;
-    quantities.diagnostics().add(
-        node, fmt::format("found '{}' on both sides of the zone; expected people on one and the "
-                          "robot on the other",
-                          objects.objects[person].name));
+    quantities.diagnostics().add(node, on_both_sides(objects.objects[person]));
     return separation;
   }
   const auto is_of = [](const std::vector<std::uint32_t>& members, std::uint32_t object) {

@@ -4,18 +4,11 @@
 
 #include <algorithm>
 
+#include "config/scene/attached.hpp"
 #include "config/text/sentences.hpp"
 #include "config/text/spelling.hpp"
 
 namespace clearance {
-namespace {
-
-bool is_named(const Object& object, const std::string& name) {
-  return object.name == name || std::ranges::count(object.groups, name) > 0;
-}
-
-}  // namespace
-
 std::vector<std::uint32_t> pairs_between(const Scene& scene, const std::string& a,
                                          const std::string& b) {
   if (b.empty()) {

@@ -52,10 +52,11 @@ struct Object {
   double pose_error = 0.0;
   // Stated: of the pose of a fixed object, of poses as sent, or of a sensor's mount; not of a link.
   PlaceError place_error = {};
-  double mesh_error = 0.0;    // m: no point of its parts is farther from its meshes than this
-  double shape_error = 0.0;   // stated, m: no point of the true body is farther from its parts
-  RestingOn resting_on = {};  // of a fixed object that is attached to another
-  double mass = kInfinity;    // kg; infinity: not stated
+  PlaceError attached_error = {};  // stated: of its place in a link that a question lets carry it
+  double mesh_error = 0.0;         // m: no point of its parts is farther from its meshes than this
+  double shape_error = 0.0;        // stated, m: no point of the true body is farther from its parts
+  RestingOn resting_on = {};       // of a fixed object that is attached to another
+  double mass = kInfinity;         // kg; infinity: not stated
   // The speed at which this part of a person may come towards a robot, whatever it does, m/s
   // (ISO 13855). Zones with `separation` count it unless they state one.
   double approach_speed = 1.6;
@@ -81,6 +82,16 @@ struct Object {
 struct ObjectPair {
   std::uint32_t first = 0, second = 0;
   bool publish = false;  // in every report's pair list, not only when it is the minimum
+};
+
+// An object that is attached to another one, or a link of a robot that is.
+struct Attachment {
+  std::uint32_t object = 0, carrier = 0;  // indices into Scene::objects
+};
+
+// What a rule of the cell is between: groups, or objects by their names.
+struct NamedPair {
+  std::string a, b;
 };
 
 // A named threshold on the distance less both margins, for every watched pair between two groups.
@@ -123,6 +134,7 @@ struct Scene {
   static constexpr std::int64_t kNoLimit = std::numeric_limits<std::int64_t>::max();
   std::int64_t response_limit_ns = kNoLimit;
   double added_shape_error = 0.0;  // stated, m; of shapes that are added later
+  double added_margin = 0.0;       // m; of objects that are added later
   PlaceError attached_error = {};  // stated; of what is attached and states none of its own
   bool gradients = false;          // of published pairs by the joints of robots, in every report
   std::vector<Object> objects;
@@ -132,6 +144,10 @@ struct Scene {
   std::vector<Robot> robots;
   std::vector<JointVariable> variables;  // of all robots
   std::vector<ObjectPair> pairs;
+  // What the pairs follow from, for objects that are attached later (config/scene/attached.hpp).
+  std::vector<NamedPair> rules, exceptions;
+  std::vector<ObjectPair> may_touch;    // by collision matrices and `touch`
+  std::vector<Attachment> attachments;  // each object once
   std::vector<Zone> zones;
   std::vector<AllowedContact>
       contacts;  // their pairs are published, and in no zone with `separation`

@@ -35,6 +35,7 @@ struct Separation {
                                     // before it is detected
   double human_uncertainty = 0.0;   // Z_d, m
   double robot_uncertainty = 0.0;   // Z_r, m
+  bool human_is_a = false;          // people are Zone::group_a, else group_b
   // For each pair of the zone, in its order: whether the first object is the human one.
   std::vector<std::uint8_t> human_is_first;
 };

@@ -282,6 +282,18 @@ double StatedErrors::angle_of(std::uint32_t object) const noexcept {
   return angle;
 }
 
+std::optional<std::string> StatedErrors::too_large_angle(const Scene& scene) const {
+  for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
+    const double angle = angle_of(i);
+    if (angle <= kMostAngle) continue;
+    return fmt::format(
+        "found angles that add up to {:.3f} rad for '{}'; expected at most {} rad over all that "
+        "carries an object",
+        angle, scene.objects[i].name, kMostAngle);
+  }
+  return std::nullopt;
+}
+
 // One source after the other shifts and turns what those behind it have displaced. So the sum of
 // the errors grows by the product of 1 + angle, which is at most 1 + angle + angle^2 of the sum of
 // all angles, since the reader of cells limits that.

@@ -8,6 +8,7 @@
 
 #include <cstdint>
 #include <limits>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -42,6 +43,9 @@ struct ErrorSource {
 // Names a source for people: "the joint 'elbow'", "the base of 'arm'", "the object 'table'".
 [[nodiscard]] std::string text_of(const ErrorSource& source, const Scene& scene);
 
+// rad: the largest sum over what carries a body. The bounds of second order hold up to here.
+inline constexpr double kMostAngle = 0.25;
+
 // What stated errors do to the distance of two objects.
 struct ErrorsBetween {
   // In no posture do they change it by more than this, m. Infinity: there is no such bound, as for
@@ -70,6 +74,8 @@ class StatedErrors {
   }
   // The sum of the angles by which what carries the object may be turned, rad.
   [[nodiscard]] double angle_of(std::uint32_t object) const noexcept;
+  // Says which object has angles that add up to more than kMostAngle; nothing: none.
+  [[nodiscard]] std::optional<std::string> too_large_angle(const Scene& scene) const;
   [[nodiscard]] ErrorsBetween between(std::uint32_t a, std::uint32_t b) const noexcept;
   [[nodiscard]] double largest(std::uint32_t a, std::uint32_t b) const noexcept {
     return any_ ? between(a, b).largest : 0.0;

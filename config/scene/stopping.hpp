@@ -66,6 +66,7 @@ struct CarriedLoad {
   // The mass that it carries with the tool, or infinity if not all is stated. `step`: the step of
   // the table that has it, as a share of `full`.
   double mass = 0.0, step = 0.0;
+  std::vector<StopStep> steps;  // of all loads, ascending; empty: masses choose none
 };
 
 struct RobotStops {

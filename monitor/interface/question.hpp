@@ -75,9 +75,9 @@ struct ObjectMotion {
   std::vector<Pose> world_from_object;
 };
 
-// An object that a link carries in this question. It is watched against all objects that are
-// watched against its link, and against the links of the same robot, but not against its link or
-// `touch`.
+// An object that a link carries in this question, with the groups, pairs, zones, errors and load of
+// an attached one. It is watched against the links of the same robot as well, but not against its
+// link or `touch`.
 struct Payload {
   std::string name;                 // an object of the cell that is not fixed; or a new name
   std::optional<ConvexBody> shape;  // of a new object

@@ -44,6 +44,10 @@ void ConstantMemory::add(const Scene& scene) {
   (*this)("sensors", scene.sensors);
   (*this)("joint variables", scene.variables);
   (*this)("pairs", scene.pairs);
+  (*this)("rules", scene.rules);
+  (*this)("exceptions", scene.exceptions);
+  (*this)("pairs that may touch", scene.may_touch);
+  (*this)("attachments", scene.attachments);
   (*this)("zones", scene.zones);
   (*this)("contacts", scene.contacts);
   (*this)("robots", std::span<const Robot>(scene.robots));
@@ -94,6 +98,7 @@ void ConstantMemory::add_inside(const char* table, const Robot& robot) {
   add_inside("stops", stops.stated_on);
   (*this)("stops", stops.joints);
   (*this)("steps of stops", stops.steps);
+  (*this)("steps of loads", stops.load.steps);
   (*this)("levers of the extension", stops.extension.levers);
   (*this)("accelerations", stops.max_accelerations);
 }
@@ -117,6 +122,11 @@ void ConstantMemory::add_inside(const char* table, const JointStop& stop) {
 
 void ConstantMemory::add_inside(const char* table, const StopStep& step) {
   (*this)(table, step.joints);
+}
+
+void ConstantMemory::add_inside(const char* table, const NamedPair& rule) {
+  add_inside(table, rule.a);
+  add_inside(table, rule.b);
 }
 
 void ConstantMemory::add_inside(const char* table, const Zone& zone) {

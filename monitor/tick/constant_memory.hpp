@@ -85,6 +85,7 @@ class ConstantMemory {
   void add_inside(const char* table, const JointVariable& variable);
   void add_inside(const char* table, const JointStop& stop);
   void add_inside(const char* table, const StopStep& step);
+  void add_inside(const char* table, const NamedPair& rule);
   void add_inside(const char* table, const Zone& zone);
   void add_inside(const char* table, const AllowedContact& contact);
 

@@ -110,6 +110,17 @@ TEST(Person, ApproachesWithTheSpeedOfItsLimbsUnlessTheZoneStatesOne) {
   }
 }
 
+TEST(Person, HoldsWhatApproachesAsTheLimbThatHoldsItDoes) {
+  const auto speed = [](const std::string& carrier) {
+    std::string text = person_cell(kAnna);
+    text.insert(text.find("pairs:"),
+                "  - {name: ball, attached: {to: " + carrier + "}, sphere: {radius: 100}}\n");
+    return limb(scene_of(text), "ball").approach_speed;
+  };
+  EXPECT_EQ(speed("r_elbow_anna"), 2.0);
+  EXPECT_EQ(speed("torso_anna"), 1.6);
+}
+
 // A tracker's id is in the names that its messages have, and in no name that the cell's rules use.
 TEST(Person, HasTheIdInItsJointsAndItsFrameButNotInItsLinks) {
   const Scene scene = scene_of(
