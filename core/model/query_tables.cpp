@@ -139,28 +139,29 @@ std::int32_t facet_across(const ConvexBody& body, int axis, bool negative) {
   return kNone;
 }
 
-// The feature of a box that lies in all of these facets, of which no two are opposite: there is
-// one.
+// The feature of the body that lies in all of these facets.
 std::int32_t common_feature(const ConvexBody& body, const std::vector<std::int32_t>& facets) {
   if (facets.size() == 1) return facets.front();
   const auto is_beside = [&](std::int32_t edge, std::int32_t facet) {
     return body.edges[edge].facet[0] == facet || body.edges[edge].facet[1] == facet;
   };
-  std::int32_t i = 0;
   if (facets.size() == 2) {
-    while (!is_beside(i, facets[0]) || !is_beside(i, facets[1])) ++i;
-    return i;
+    for (std::int32_t i = 0; i < static_cast<std::int32_t>(body.edges.size()); ++i) {
+      if (is_beside(i, facets[0]) && is_beside(i, facets[1])) return i;
+    }
+    return kNone;
   }
-  const auto in_all = [&](const Vertex& vertex) {
-    return std::all_of(facets.begin(), facets.end(), [&](std::int32_t facet) {
+  for (std::int32_t i = 0; i < static_cast<std::int32_t>(body.vertices.size()); ++i) {
+    const Vertex& vertex = body.vertices[i];
+    const bool in_all = std::all_of(facets.begin(), facets.end(), [&](std::int32_t facet) {
       for (std::int32_t k = 0; k < vertex.edges; ++k) {
         if (is_beside(body.vertex_edges[vertex.first_edge + k].edge, facet)) return true;
       }
       return false;
     });
-  };
-  while (!in_all(body.vertices[i])) ++i;
-  return i;
+    if (in_all) return i;
+  }
+  return kNone;
 }
 
 BoxFeatures box_features(const ConvexBody& body) {
@@ -183,7 +184,9 @@ BoxFeatures box_features(const ConvexBody& body) {
       if ((index >> axis & 1U) != 0) facets.push_back(across[axis][index >> (3 + axis) & 1U]);
     }
     if (facets.empty()) continue;
-    box.farthest[index] = static_cast<std::int8_t>(common_feature(body, facets));
+    const std::int32_t feature = common_feature(body, facets);
+    assert(feature != kNone);
+    box.farthest[index] = static_cast<std::int8_t>(feature);
   }
   box.length = box.half.norm();
   return box;
