@@ -20,8 +20,9 @@ bool is_of_a_person(std::span<const Robot> robots, std::uint32_t object) {
 }
 
 std::string refusal(const Object& a, const Object& b, const std::string& where) {
-  return fmt::format("found '{}' against '{}' {}; expected no contact between a person and a robot",
-                     a.name, b.name, where);
+  return fmt::format(
+      "found '{}' against '{}' {}; expected no contact between a person and what moves", a.name,
+      b.name, where);
 }
 
 }  // namespace

@@ -50,6 +50,11 @@ class Attacher {
   [[nodiscard]] std::optional<std::uint32_t> object_named(const std::string& name) const;
   [[nodiscard]] std::optional<Place> place_of(std::uint32_t object) const;
   [[nodiscard]] Fault object_of(const Payload& payload, std::uint32_t& object);
+  // A person of the cell and what moves stay watched, whatever the cell says.
+  [[nodiscard]] bool is_excepted(PairKey key) const {
+    return excepted_.contains(key) &&
+           !contact_with_people(scene_.objects, scene_.robots, {}, {}, key.first, key.second);
+  }
   void carry(std::uint32_t object, const Place& place, const Pose& link_from_object);
   void watch(std::uint32_t object, std::uint32_t link_object, std::uint32_t robot);
   [[nodiscard]] bool has(const std::string& name, std::uint32_t object, Attached attached) const;
@@ -171,7 +176,7 @@ void Attacher::watch(std::uint32_t object, std::uint32_t link_object, std::uint3
     if (is_on_a_side(other, allowed, Attached::kDoNot)) excepted_.insert(key_of(object, other));
   const auto add = [&](std::uint32_t other) {
     const PairKey key = key_of(object, other);
-    if (other != object && !excepted_.contains(key) && watched_.insert(key).second)
+    if (other != object && !is_excepted(key) && watched_.insert(key).second)
       scene_.pairs.push_back({.first = key.first, .second = key.second});
   };
   const std::size_t before = scene_.pairs.size();
@@ -320,7 +325,7 @@ Scene Attacher::finish() {
   for (std::size_t p = 0; p < scene_.pairs.size(); ++p) {
     const ObjectPair& pair = scene_.pairs[p];
     const PairKey key(pair.first, pair.second);
-    const bool gone = left_out_.contains(key) || excepted_.contains(key);
+    const bool gone = left_out_.contains(key) || is_excepted(key);
     now[p] = gone ? kGone : static_cast<std::uint32_t>(kept.size());
     if (!gone) kept.push_back(pair);
   }

@@ -249,7 +249,10 @@ void PartnerPort::hear_scenes() {
     const auto bytes = std::as_bytes(std::span(its.bytes._buffer, its.bytes._length));
     const bool is_good = its.build != nullptr && std::strcmp(its.build, kBuild) == 0 &&
                          checksum_of(bytes) == its.checksum;
-    if (is_good) actions_.hear_scene(its);
+    if (is_good)
+      actions_.hear_scene(its);
+    else
+      scene_->daemon = 0;  // is told by none
   }
   if (actions_.update_lead) actions_.update_lead();
 }

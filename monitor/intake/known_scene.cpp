@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <variant>
 
+#include "config/scene/people.hpp"
 #include "config/yaml/diagnostics.hpp"
 #include "config/yaml/quantity_nodes.hpp"
 #include "config/yaml/yaml_writer.hpp"
@@ -64,8 +65,10 @@ NamePair name_pair(const std::string& a, const std::string& b) { return std::min
 
 std::set<NamePair> watched_pairs(const Scene& scene) {
   std::set<NamePair> pairs;
-  for (const ObjectPair& pair : scene.pairs)
-    pairs.insert(name_pair(scene.objects[pair.first].name, scene.objects[pair.second].name));
+  for (const auto& [first, second, publish] : scene.pairs) {
+    if (!contact_with_people(scene.objects, scene.robots, {}, {}, first, second))
+      pairs.insert(name_pair(scene.objects[first].name, scene.objects[second].name));
+  }
   return pairs;
 }
 

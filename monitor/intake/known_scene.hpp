@@ -53,7 +53,7 @@ struct KnownScene {
   std::map<std::string, KnownObject> objects;        // every object of the scene
   std::map<std::string, std::optional<Pose>> links;  // where nothing moves the link: in the world
   std::map<std::string, KnownRobot> robots;
-  std::set<NamePair> watched;     // the pairs of the scene
+  std::set<NamePair> watched;     // watched_pairs()
   std::set<NamePair> exceptions;  // that follow MoveIt's collision matrix
   std::set<std::string> margins;  // links with an entry of `margins`
   LengthUnit unit = LengthUnit::kMetre;
@@ -64,6 +64,7 @@ struct KnownScene {
 
 [[nodiscard]] NamePair name_pair(const std::string& a, const std::string& b);
 
+// The pairs that a matrix may leave out: all but those of a person of the cell and what moves.
 [[nodiscard]] std::set<NamePair> watched_pairs(const Scene& scene);
 
 // Cell::yaml has to be the text of the cell.

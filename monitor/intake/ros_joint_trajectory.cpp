@@ -23,8 +23,8 @@ std::string begin_at_rest(const Scene& scene, const InputState& state, JointTraj
     const auto at = static_cast<std::size_t>(found - scene.variables.begin());
     if (found == scene.variables.end() || state.joints[at].state != PresentPose::State::kUsable) {
       return fmt::format(
-          "found a first point after time 0 and no position of joint '{}' before it; expected a "
-          "point at time 0, or a joint state",
+          "found a first point after time 0 and no position of joint '{}' that is good and within "
+          "its age limit; expected a point at time 0, or a joint state",
           joint);
     }
     motion.positions.push_back(state.joints[at].position);

@@ -52,7 +52,8 @@ std::string for_each_inputs(const Cell& cell, const std::filesystem::path& bag,
   InputState state;
   Frames frames;
   OfflineReplayOptions options;
-  for (const BagMotion& motion : motions) options.also_at.push_back(motion.log_ns);
+  std::vector<std::int64_t>& times = options.also_at;
+  for (const BagMotion& motion : motions) times.push_back(motion.time_ns(cell.ros.use_sim_time));
   options.stop = [&] { return next == motions.size(); };
   const OfflineReplay replay = replay_offline(cell, bag, options, [&](const ReplayedTick& tick) {
     const Scene& scene = tick.cell.scene;
@@ -61,12 +62,12 @@ std::string for_each_inputs(const Cell& cell, const std::filesystem::path& bag,
       state = room_for_inputs(scene);
       frames.forget();
     }
-    if (next == motions.size() || tick.report.now_ns < motions[next].log_ns) return;
+    if (next == motions.size() || tick.report.now_ns < times[next]) return;
     state.cycle = tick.report.cycle;
     state.now_ns = tick.report.now_ns;
     read_inputs(tick.monitor, state);
     const std::vector<SeenFrame> seen = frames.of(scene, tick.monitor);
-    for (; next < motions.size() && motions[next].log_ns <= tick.report.now_ns; ++next)
+    for (; next < motions.size() && times[next] <= tick.report.now_ns; ++next)
       use(next, {tick.cell, state, seen});
   });
   return replay.error;

@@ -13,6 +13,12 @@ struct BagMotion {
   std::string id;  // "/arm/joint_trajectory at 12.345 s": the time since the first message
   std::vector<std::byte> cdr;
   std::int64_t log_ns = 0;
+  std::int64_t clock_ns = 0;  // of the last message of /clock before it; 0: there is none
+
+  // When it came, in the time of the cell's ticks.
+  [[nodiscard]] std::int64_t time_ns(bool use_sim_time) const noexcept {
+    return use_sim_time && clock_ns > 0 ? clock_ns : log_ns;
+  }
 };
 
 // Adds the motions of a bag in the order of their times. Returns an empty text, or what is wrong

@@ -43,6 +43,28 @@ TEST(Payloads, AnObjectOfTheCellNeedsNoPoseWhenItIsCarried) {
   EXPECT_GT(answered(scene, question).lower, 0.3);
 }
 
+// As if a collision matrix of MoveIt allowed every pair of the cell.
+TEST(Payloads, LeaveAPersonWatchedWhateverMayTouch) {
+  const test::ScratchFolder folder;
+  test::write_text(folder / "scara.urdf", test::kScaraUrdf);
+  Scene scene = scene_of(
+      "name: test\nunits: {length: m, angle: rad}\nrobots:\n  - {name: arm, urdf: scara.urdf}\n"
+      "  - {name: anna, person: {stature: 1.7, error: 0.06}, base: {pose: {xyz: [1.2, 0.5, 0]}}}\n"
+      "pairs: [{between: [arm, anna]}]\n",
+      folder / "cell.yaml");
+  Question question = swing(-1.0, 0.6);
+  question.others = OthersMove::kNot;
+  for (const JointVariable& variable : scene.variables) {
+    const bool is_of_anna = scene.robots[variable.robot].person.has_value();
+    if (is_of_anna) question.held.push_back({variable.name, 0.0});
+  }
+  const Answer without = answered(scene, question);
+  EXPECT_LT(without.lower, 0.5);
+  scene.may_touch = scene.pairs;
+  question.payloads = {ball()};
+  EXPECT_LE(answered(scene, question).lower, without.upper);
+}
+
 TEST(Payloads, FaultsAreSentences) {
   const Scene scene = scara_beside(kPin);
   Question question = swing(-1.0, 0.6);

@@ -86,6 +86,19 @@ TEST_F(MoveItCell, MalformedMessagesAreRefusedByTheirField) {
   EXPECT_EQ(refused(scene), "world.collision_objects[0].primitives[0].type");
 }
 
+// What the reader of cells would refuse, the matrix does not ask for: its message would be lost.
+TEST(WatchedPairs, ThatAMatrixMayLeaveOutAreNoneOfAPersonAndWhatMoves) {
+  const Scene scene = scene_of(
+      "name: test\nunits: {length: m, angle: deg}\nrobots:\n"
+      "  - {name: anna, person: {stature: 1.7, error: 0.06}, base: {pose: {xyz: [1, 0, 0]}}}\n"
+      "objects:\n  - {name: cart, max_speed: 1, sphere: {radius: 0.1}}\n"
+      "  - {name: post, fixed: true, sphere: {radius: 0.1}, pose: {xyz: [0, 0, 0]}}\n"
+      "pairs:\n  - {between: [anna, cart]}\n  - {between: [anna, post]}\n");
+  const std::set<NamePair> pairs = watched_pairs(scene);
+  EXPECT_FALSE(pairs.empty());
+  for (const auto& [a, b] : pairs) EXPECT_TRUE(a == "post" || b == "post") << a << " " << b;
+}
+
 TEST_F(MoveItCell, AMatrixWithANameTwiceIsRefused) {
   PlanningScene scene;
   scene.is_diff = scene.robot_state_is_diff = true;
