@@ -50,8 +50,8 @@ class Writers {
     }));
   }
   [[nodiscard]] std::size_t count() const { return writers_.size(); }
-  // A reader may discover the writer later than the writer discovers it. Samples that the writer's
-  // history keeps reach it; what is behind them would be lost.
+  // A reader may discover the writer later than the writer discovers it. What was sent until then
+  // does not reach it.
   void let_first_arrive(dds_entity_t writer) {
     if (begun_.insert(writer).second) dds_wait_for_acks(writer, kSettleNs);
   }
