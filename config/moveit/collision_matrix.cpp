@@ -7,7 +7,7 @@
 namespace clearance::moveit {
 namespace {
 
-// Of two entries of one name, none could be meant.
+// Two entries of one name contradict each other, and none says which is meant.
 std::optional<FieldFault> refuse_double(const char* field, std::vector<std::string> names) {
   std::ranges::sort(names);
   const auto twice = std::ranges::adjacent_find(names);

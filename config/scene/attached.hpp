@@ -1,4 +1,4 @@
-// What holds of every attached object, whether a cell, a command or a question attaches it.
+// The rules for every attached object, whether a cell, a command or a question attaches it.
 #pragma once
 
 #include <cstdint>

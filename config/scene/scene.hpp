@@ -89,7 +89,7 @@ struct Attachment {
   std::uint32_t object = 0, carrier = 0;  // indices into Scene::objects
 };
 
-// What a rule of the cell is between: groups, or objects by their names.
+// The two sides of a rule of the cell: groups, or objects by their names.
 struct NamedPair {
   std::string a, b;
 };
@@ -144,7 +144,8 @@ struct Scene {
   std::vector<Robot> robots;
   std::vector<JointVariable> variables;  // of all robots
   std::vector<ObjectPair> pairs;
-  // What the pairs follow from, for objects that are attached later (config/scene/attached.hpp).
+  // The rules that make the pairs, kept for objects that are attached later
+  // (config/scene/attached.hpp).
   std::vector<NamedPair> rules, exceptions;
   std::vector<ObjectPair> may_touch;    // by collision matrices and `touch`
   std::vector<Attachment> attachments;  // each object once

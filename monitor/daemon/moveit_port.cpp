@@ -102,8 +102,8 @@ bool MoveItPort::is_done(std::uint64_t command) {
   return has_message(changes_until(changes_, revision), command);
 }
 
-// What else was done here is not in that cell. It may have another revision here, with other
-// options.
+// Other changes that were done here are not in that cell. The cell may have another revision here,
+// with other options.
 void MoveItPort::took_over(std::uint64_t revision) {
   if (!sharing_) return;
   {

@@ -90,7 +90,7 @@ class MoveItPort {
   bool leads_ = false, keeps_ = false;  // when last looked at; a command to keep files waits
   // For the scene thread.
   moveit::SceneKeeper keeper_;
-  // What led to the scene in force, by whichever daemon led; then what is about to change it.
+  // The changes that led to the scene in force, by whichever daemon led; then those to come.
   std::vector<DoneSceneChange> changes_;
   std::uint64_t current_ = 0;  // the message whose changes are being made; 0: none
 };

@@ -47,7 +47,7 @@ class SceneTurns {
   // Another leader's cell is in force here, and these changes led to it. What was done here and is
   // not among them is lost with the cell before, and is to be done.
   void go_on_from(std::span<const DoneSceneChange> changes);
-  // What was done here cannot be lost any more.
+  // Both daemons have the scene to which the messages that are done have led.
   void forget_done();
   // Drops what another leader has done, if the scene in force is of this revision: its messages up
   // to the last change that led to it, and what came before those here.

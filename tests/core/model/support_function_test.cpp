@@ -36,7 +36,7 @@ TEST(Support, IsTheFarthestVertexAlsoWhereManyEdgesAreOrthogonalWithinRounding) 
   }
 }
 
-// Points of the cone of a prism, and of roofs of which one is nearly flat.
+// Directions in which a prism, and roofs of which one is nearly flat, have no end.
 TEST(Support, AlongRaysIsAtLeastThatOfEachPointWithinAndLittleAlongAFacet) {
   struct Unbounded {
     std::vector<HalfSpace> rows;

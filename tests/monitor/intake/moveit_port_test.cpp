@@ -290,7 +290,8 @@ TEST_F(SharedMoveItPort, ACommandIsDoneWithTheLeadersCellThoughThisOneLedForAMom
   EXPECT_TRUE(is_done(7));
 }
 
-// A cell of which nothing was told, and one that has another revision here, with other options.
+// A cell whose changes the leader did not tell of, and one that has another revision here, with
+// other options.
 TEST_F(SharedMoveItPort, OnlyWhatLedToTheCellThatWasTakenOverIsDone) {
   const std::uint64_t first = revision();
   lead(true);
