@@ -17,7 +17,7 @@ namespace clearance {
 // When two daemons publish, the one that started later stops at the first report that it hears from
 // the other. A silent writer does not displace this daemon: its process may be dead, stopped or
 // hung. A partner publishes beside this daemon; of three partners, the one that started last stops.
-// One thread calls poll() and have_just_left(); any thread may call the rest.
+// One thread calls poll(), have_just_left() and are_present(); any thread may call the rest.
 class OtherDaemons {
  public:
   // `own` publishes on the distances topic of this name through this participant, whose writers are
@@ -32,6 +32,9 @@ class OtherDaemons {
   void poll();
   // True once after other writers have left: latched topics then hold their last samples.
   [[nodiscard]] bool have_just_left() noexcept { return std::exchange(left_, false); }
+
+  // Whether a writer that is not of a partner is there, a silent one included.
+  [[nodiscard]] bool are_present() const noexcept { return met_.size() > partners_.size(); }
 
   // Another daemon started first, so nothing more may be published.
   [[nodiscard]] bool yields() const noexcept { return yields_.load(); }

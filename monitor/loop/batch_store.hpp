@@ -2,6 +2,7 @@
 // the leader names, whatever order they came in here.
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -32,6 +33,10 @@ class BatchStore {
   void choose_all(bool keep) noexcept;
   // Chooses these. Returns false, and chooses none, if one has not come.
   [[nodiscard]] bool choose(std::span<const TickInput> inputs) noexcept;
+  // Whether all of these have come, and wait for an agreed tick.
+  [[nodiscard]] bool has(std::span<const TickInput> inputs) noexcept {
+    return std::ranges::all_of(inputs, [this](const auto& input) { return find(input) != tail_; });
+  }
   // When this daemon joins the partner's state: begin_again(), then forget() with the inputs of
   // each notice up to that state, the newest notice first. The state rests on the batches that
   // these notices name, and on no other batch that waits here. For each source, forget() removes

@@ -266,19 +266,25 @@ void TickLoop::take_in() noexcept {
     if (waiting_ == nullptr) return;
     const std::size_t taken = state_.samples().size() + state_.joints().size();
     if (taken + waiting_->size() > options_.max_samples) return;
-    use(*waiting_);
-    for (ReportSink* sink : sinks_) sink->input(*waiting_);
+    if (use(*waiting_)) {
+      for (ReportSink* sink : sinks_) sink->input(*waiting_);
+    }
     waiting_ = nullptr;
   }
 }
 
-// Poses for another scene have ids of other objects, so they are counted and not used.
-void TickLoop::use(const PoseBatch& batch) noexcept {
+// Poses for another scene have ids of other objects, so they are counted and not used. Joints have
+// such ids only if they waited from before a change of the cell until a partner's state was joined.
+// A recording has names instead, so a replay would use them. Returns false for these.
+bool TickLoop::use(const PoseBatch& batch) noexcept {
+  const bool is_used = state_.use(batch);
+  if (!is_used && !batch.joints.empty()) return false;
   note_source(batch);
   note_phase(batch);
-  if (state_.use(batch)) return;
+  if (is_used) return true;
   for (const PoseSample& sample : batch.samples)
     state_.monitor().refuse(sample.object, Reject::kWrongRevision);
+  return true;
 }
 
 // The report names the last batch of each source; this makes a replay exact.

@@ -104,7 +104,7 @@ class TickLoop {
   void take_in() noexcept;
   [[nodiscard]] bool tick_once(std::int64_t deadline) noexcept;
   [[nodiscard]] TickTime tick_time() noexcept;
-  void use(const PoseBatch& batch) noexcept;
+  [[nodiscard]] bool use(const PoseBatch& batch) noexcept;
   void note_source(const PoseBatch& batch) noexcept;
   void note_phase(const PoseBatch& batch) noexcept;
   void note_stamps() noexcept;

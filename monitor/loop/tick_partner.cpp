@@ -161,8 +161,8 @@ std::int64_t TickPartner::decide(std::int64_t deadline, std::uint64_t cycle,
       deadline = tick_apart(deadline);
   }
   const bool hears = hears_leader();
-  wants_state_ =
-      hears && newest_revision_ == revision_ && (standing_ == kStarting || standing_ == kApart);
+  const bool may_ask = hears && may_join() && newest_revision_ == revision_;
+  wants_state_ = may_ask && (wants_state_ || has_inputs_of_leader());
   // A daemon that was stopped for long counts lower than its leader: clients would see cycles
   // again.
   const bool counts_lower = hears && newest_cycle_ > cycle_ + 1;

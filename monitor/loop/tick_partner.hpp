@@ -67,7 +67,8 @@ class TickPartner final : public PoseSource, public TickPace {
   // Any thread.
   [[nodiscard]] std::int64_t period_ns() const noexcept { return options_.period_ns; }
   [[nodiscard]] PartnerStanding standing() const noexcept { return shown_standing_.load(); }
-  // This daemon does not follow a partner whose ticks of the same scene it hears.
+  // This daemon does not follow a partner whose ticks of the same scene it hears, and has had the
+  // inputs that one of them names.
   [[nodiscard]] bool wants_state() const noexcept { return wants_state_.load(); }
   // The lineage that a successor takes over, from Successor::begin() to its end; otherwise 0.
   [[nodiscard]] std::uint64_t becoming() const noexcept { return shown_becoming_.load(); }
@@ -123,6 +124,12 @@ class TickPartner final : public PoseSource, public TickPace {
   enum class FramesWait : std::uint8_t { kNot, kForAnswer, kForNotice };
   void choose_frames(FramesWait wait) noexcept;
   [[nodiscard]] bool hears_leader() noexcept;
+  // Joints that came before a change of the cell have the ids of the former one, and a source may
+  // be one that the leader alone hears. A daemon that joined then would lack what is named next.
+  [[nodiscard]] bool has_inputs_of_leader() noexcept {
+    const TickNotice* const newest = known(newest_cycle_);
+    return newest != nullptr && store_.has(newest->used());
+  }
   [[nodiscard]] bool has_frames(const TickNotice& notice) noexcept;
   [[nodiscard]] TickTime own_time(std::int64_t due) noexcept;
   void approach_own_clock() noexcept;

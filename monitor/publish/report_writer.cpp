@@ -162,7 +162,10 @@ Sample<clearance_msg_Catalogue> ReportWriter::own_catalogue() const {
 // left, our values are written again.
 void ReportWriter::look_for_others() {
   others_.poll();
-  if (!others_.have_just_left()) return;
+  if (others_.have_just_left()) tell_again();
+}
+
+void ReportWriter::tell_again() {
   zones_.write_again();
   catalogue_is_due_ = true;
 }
@@ -317,8 +320,11 @@ void ReportWriter::write_separation(const Report& report) {
   send(TopicKind::kSeparation, separation_, *now_->separation, "separation");
 }
 
-// Failed writes count as dropped: in both cases the client got nothing.
+// Failed writes count as dropped: in both cases the client got nothing. Another daemon, which ends
+// because this one started first, may have left its catalogue with clients. It is taken for present
+// until its lease ends.
 void ReportWriter::write_health(const LoopStatistics& statistics) {
+  if (others_.are_present()) tell_again();
   responses_.name(statistics, now_->cell.scene);
   auto sample = make_health(now_->cell.scene, statistics, poses_,
                             dropped_before_ + now_->queue.dropped_reports() + failed_writes_.load(),

@@ -104,6 +104,7 @@ class ReportWriter {
   void open_topics(const Scene& scene);
   [[nodiscard]] Sample<clearance_msg_Catalogue> own_catalogue() const;
   void look_for_others();
+  void tell_again();
   void write_report(const QueuedReport& queued);
   void note_delay(const QueuedReport& queued, bool published);
   [[nodiscard]] bool write_distances(const QueuedReport& queued, const TickTag& tag);

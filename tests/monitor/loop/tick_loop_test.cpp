@@ -248,6 +248,22 @@ TEST(TickLoop, RefusesBatchesMadeForAnotherSceneAndCountsThem) {
   EXPECT_EQ(loop.reports.used[0].at(0).sequence_number, 2u);
 }
 
+// A recording has the names of joints instead of their ids, so that a replay would use them.
+TEST(TickLoop, NamesAndRecordsNoJointsWithIdsOfAnUnknownScene) {
+  Loop loop;
+  loop.scene = test::scara_cell();
+  loop.poses.add("arm", 1, test::joints(0.1, 0.2, 0.1, kStart));
+  loop.poses.last().scene_revision = loop.scene.revision + 1;
+  loop.poses.add("arm", 2, test::joints(0.1, 0.2, 0.1, kStart));
+  loop.poses.last().scene_revision = loop.scene.revision + 1;
+  loop.poses.add("other", 3, test::joints(0.1, 0.2, 0.1, kStart));
+  loop.poses.last().scene_revision = loop.scene.revision;
+  loop.run({.max_ticks = 1});
+  EXPECT_EQ(loop.reports.inputs, std::vector<std::uint64_t>{3});
+  ASSERT_EQ(loop.reports.used[0].size(), 1u);
+  EXPECT_EQ(loop.reports.used[0][0].source.view(), "other");
+}
+
 TEST(TickLoop, RemembersTheSmallestDistanceSeen) {
   Loop loop;
   loop.poses.add("arm", 1, 1);

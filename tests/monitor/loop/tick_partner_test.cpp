@@ -276,6 +276,24 @@ TEST_F(TickPartners, ADaemonThatCountsLowerIsSilentUntilItHasTheOthersState) {
   expect_agreement();
 }
 
+// With the state it would lack what the leader names next, and be apart again.
+TEST_F(TickPartners, ADaemonWantsNoStateBeforeItHasTheInputsThatItsLeaderNames) {
+  run_until_left_leads();
+  const auto tick_with = [this](bool right_hears) {
+    left.get(++sent);
+    if (right_hears) right.get(sent);
+    left.tick();
+    left.tell(right);
+    right.tick();
+  };
+  for (int i = 0; i < 3; ++i) tick_with(false);
+  EXPECT_FALSE(right.ticks.wants_state());
+  tick_with(true);
+  EXPECT_TRUE(right.ticks.wants_state());
+  tick_with(false);
+  EXPECT_TRUE(right.ticks.wants_state()) << "one batch that is late changes nothing";
+}
+
 // A pose that is sent once reached this daemon alone, and the leader ends before it has it.
 TEST_F(TickPartners, WhatADaemonHasUsedApartCountsAgainAfterItJoins) {
   run_until_left_leads();

@@ -6,8 +6,11 @@
 #include <algorithm>
 #include <cstring>
 
+#include "monitor/client/client.hpp"
+#include "monitor/wire/convert.hpp"
 #include "tests/monitor/tick/small_cells.hpp"
 #include "tests/shared/loopback.hpp"
+#include "tests/shared/sealed.hpp"
 
 namespace clearance {
 namespace {
@@ -121,6 +124,36 @@ TEST(ReportWriter, TellsALateClientNamesAndZones) {
   ASSERT_NE(zone, nullptr);
   EXPECT_STREQ(zone->name, "zone");
   EXPECT_TRUE(zone->active);
+}
+
+// Another daemon, which started later, has ended before others heard that it leaves.
+TEST(ReportWriter, ReplacesTheCatalogueOfAnotherDaemonEachSecondWhileThatOneIsThere) {
+  Publisher publisher;
+  Participant other(publisher.dds);
+  const auto writer_of = [&](TopicKind kind) {
+    return other.writer(kind, publisher.cell.topics.*topic(kind).name);
+  };
+  const dds_entity_t reports = writer_of(TopicKind::kDistances);
+  const dds_entity_t catalogues = writer_of(TopicKind::kCatalogue);
+  client::Connection connection(publisher.dds, publisher.cell.topics);
+  client::Catalogue names(connection);
+  const auto has = [&](std::uint64_t revision) {
+    return test::eventually([&] {
+      publisher.tick(0.3);
+      publisher.queue.statistics(LoopStatistics(publisher.scene));
+      names.update();
+      return names.message() != nullptr && names.revision() == revision;
+    });
+  };
+  ASSERT_TRUE(has(publisher.scene.revision));
+  Sample<clearance_msg_Catalogue> wrong = make_catalogue(publisher.cell);
+  wrong->scene_revision = publisher.scene.revision + 1;
+  test::write_sealed(other, catalogues, *wrong);
+  EXPECT_TRUE(test::eventually([&] {
+    names.update();
+    return names.message(publisher.scene.revision + 1) != nullptr;
+  }));
+  EXPECT_TRUE(has(publisher.scene.revision)) << "while the writer " << reports << " is there";
 }
 
 TEST(ReportWriter, PublishesAZoneOnlyWhenItChanges) {
