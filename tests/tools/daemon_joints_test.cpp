@@ -31,6 +31,11 @@ class DaemonJoints : public WatchedDaemon {
         "pairs:\n  - {between: [arm, wall], publish: true}\n"
         "  - {between: [arm, arm], publish: false}\n");
   }
+  // A machine that stands still has them late first, and then back.
+  bool hears_joints() {
+    return daemon->told("joints-heard", {"3 joints of scara"}) ||
+           daemon->told("joints-back", {"3 joints of scara"});
+  }
   // A step that sends these positions of all joints, and velocities unless none are given.
   static std::function<void()> sent(RosJoints& joints, const std::vector<double>& positions,
                                     const std::vector<double>& velocities = {}) {
@@ -241,7 +246,7 @@ TEST_F(DaemonJoints, OfARobotNeedNoCellFile) {
   ASSERT_TRUE(eventually([&] {
     joints.send(kNames, {0, 0, 0.1});
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    return daemon->told("joints-heard", {"3 joints of scara"});
+    return hears_joints();
   })) << daemon->output();
   EXPECT_TRUE(daemon->told("how-to-reach", {"in partition " + dds.partition})) << daemon->output();
   EXPECT_TRUE(daemon->told("robot-note", {"scara", neighbours})) << daemon->output();
@@ -256,7 +261,7 @@ TEST_F(DaemonJoints, OfARobotWithoutACellFileMayHaveATopicOfAnyName) {
   ASSERT_TRUE(eventually([&] {
     joints.send(kNames, {0, 0, 0.1});
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    return daemon->told("joints-heard", {"3 joints of scara"});
+    return hears_joints();
   })) << daemon->output();
   ChildProcess refused(kDaemon, with(robot, {"measured"}));
   EXPECT_EQ(refused.wait(), 2);
@@ -275,7 +280,7 @@ TEST_F(DaemonJoints, OfADescriptionThatRos2PublishesNeedNoFileAtAll) {
   ASSERT_TRUE(eventually([&] {
     joints.send(kNames, {0, 0, 0.1});
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
-    return daemon->told("joints-heard", {"3 joints of scara"});
+    return hears_joints();
   })) << daemon->output();
   EXPECT_TRUE(
       daemon->told("description-kept", {(folder / "cache/clearance/robot_description_").string()}))
