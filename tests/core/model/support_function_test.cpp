@@ -36,7 +36,7 @@ TEST(Support, IsTheFarthestVertexAlsoWhereManyEdgesAreOrthogonalWithinRounding) 
   }
 }
 
-// Directions in which a prism, and roofs of which one is nearly flat, have no end.
+// A prism and two wedges, one of them nearly flat, with directions of their recession cones.
 TEST(Support, AlongRaysIsAtLeastThatOfEachPointWithinAndLittleAlongAFacet) {
   struct Unbounded {
     std::vector<HalfSpace> rows;
