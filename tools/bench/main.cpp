@@ -13,6 +13,7 @@
 
 #include "monitor/app/print.hpp"
 #include "monitor/files/build_info.hpp"
+#include "monitor/loop/realtime.hpp"
 #include "tools/bench/beside_person.hpp"
 #include "tools/bench/cells.hpp"
 #include "tools/bench/peers/fcl_motions.hpp"
@@ -25,6 +26,7 @@ namespace {
 
 constexpr const char* kHelp =
     R"(clearance-bench measures the core and the tick. Queries are timed in thread CPU time, ticks on the wall.
+Its memory is locked, as the daemon's is, where that is allowed.
 
 Usage: clearance-bench [OPTIONS]
        clearance-bench --suite [...]  all rivals on one set of cases with exact answers; --suite --help has its options
@@ -168,6 +170,8 @@ int run(int argc, char** argv) {
 
 int main(int argc, char** argv) {
   try {
+    if (const clearance::Refusal refusal = clearance::lock_memory())
+      clearance::print(stderr, "clearance-bench: {}\n", *refusal);
     return run(argc, argv);
   } catch (const std::exception& error) {
     clearance::print(stderr, "clearance-bench: {}\n", error.what());
