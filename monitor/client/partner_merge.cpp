@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "monitor/inputs/elapsed.hpp"
+#include "monitor/wire/report_check.hpp"
 #include "monitor/wire/report_checksum.hpp"
 
 namespace clearance::client {
@@ -21,7 +22,7 @@ const char* name(PartnerState state) noexcept {
 }
 
 bool PartnerMerge::is_silent(std::int64_t heard_ns, std::int64_t now_ns) const noexcept {
-  return now_ns - heard_ns > std::max(kSilentNs, 4 * step_ns_);
+  return now_ns - heard_ns > std::max(kSilentNs, 4 * period_ns_);
 }
 
 bool PartnerMerge::changes_scene(const clearance_msg_Distances& report) const noexcept {
@@ -53,7 +54,7 @@ bool PartnerMerge::is_next(const clearance_msg_Distances& report,
   const bool is_older = report.now_ns < now_ns_;
   const std::int64_t newer_ns = elapsed(now_ns_, report.now_ns);
   if (report.cycle > cycle_) return newer_ns > 0 || (is_older && contradicts(report));
-  return newer_ns - newer_ns / 3 > step_ns_;
+  return newer_ns - newer_ns / 3 > period_ns_;
 }
 
 // Within a lineage a later cycle has a later time.
@@ -84,7 +85,7 @@ bool PartnerMerge::take(const clearance_msg_Distances& report, std::int64_t hear
   if (check_.state == PartnerState::kAlone && has_partner && cycle_ != 0 && !before.is_compared) {
     check_ = {PartnerState::kMissing, cycle_, senders_[1].partner};
   }
-  if (report.cycle == cycle_ + 1) step_ns_ = elapsed(now_ns_, report.now_ns);
+  period_ns_ = stated_period_ns(report);
   cycle_ = report.cycle;
   lineage_ = report.lineage;
   revision_ = report.scene_revision;

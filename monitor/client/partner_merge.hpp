@@ -80,10 +80,10 @@ class PartnerMerge {
 
   std::array<Seen, kSeen> seen_{};  // those that were handed out, by cycle
   std::uint64_t cycle_ = 0, lineage_ = 0, revision_ = 0;
-  std::int64_t now_ns_ = 0, step_ns_ = 0;  // of the last one, and since the one before it
-  std::int64_t handed_out_ns_ = 0;         // when the last one was heard
-  std::array<Sender, 2> senders_;          // the one heard last first
-  PartnerCheck check_, found_;             // the latter: since the last one was handed out
+  std::int64_t now_ns_ = 0, period_ns_ = 0;  // of the last one, which states the period
+  std::int64_t handed_out_ns_ = 0;           // when the last one was heard
+  std::array<Sender, 2> senders_;            // the one heard last first
+  PartnerCheck check_, found_;               // the latter: since the last one was handed out
 };
 
 }  // namespace clearance::client

@@ -3,6 +3,7 @@
 // and each of them looks like news.
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 
 #include "clearance.h"
@@ -36,12 +37,20 @@ struct ReportCheck {
   // The report is of another scene than the one before it, with other ids.
   bool other_scene = false;
   // Reports between the one before and this one. Partners that tick apart need not count alike:
-  // between two lineages the time of the ticks counts.
+  // between two lineages the time of the ticks counts, in periods that the report states. A tick is
+  // told up to a period late, so the next cycle is missing none for two periods.
   std::uint64_t missed = 0;
   ReportError error = ReportError::kGood;  // by ReportJudge
 
   [[nodiscard]] bool fresh() const noexcept { return !is_old && !clocks_disagree; }
 };
+
+// The time until the next report, ns; 0: the report states none.
+template <class Message>
+[[nodiscard]] std::int64_t stated_period_ns(const Message& report) noexcept {
+  constexpr std::int64_t kLongest = 1'000'000'000'000;  // sums of it do not overflow
+  return std::clamp<std::int64_t>(report.period_ns, 0, kLongest);
+}
 
 class ReportChecker {
  public:
@@ -92,8 +101,11 @@ class ReportChecker {
   template <class Message>
   [[nodiscard]] std::uint64_t missed_before(const Message& report) const noexcept {
     if constexpr (requires { report.lineage; }) {
-      if (report.lineage != lineage_ && step_ns_ > 0) {
-        const std::int64_t steps = (report.now_ns - now_ns_ + step_ns_ / 2) / step_ns_;
+      const std::int64_t period = stated_period_ns(report);
+      const std::int64_t later = report.now_ns - now_ns_;
+      const bool goes_on = report.cycle == cycle_ + 1 && later < 2 * period;
+      if (report.lineage != lineage_ && period > 0 && !goes_on) {
+        const std::int64_t steps = (later + period / 2) / period;
         return steps > 1 ? static_cast<std::uint64_t>(steps - 1) : 0;
       }
     }
@@ -102,9 +114,6 @@ class ReportChecker {
   template <class Message>
   void note_lineage(const Message& report) noexcept {
     if constexpr (requires { report.lineage; }) {
-      if (report.lineage == lineage_ && report.cycle == cycle_ + 1) {
-        step_ns_ = report.now_ns - now_ns_;
-      }
       lineage_ = report.lineage;
       now_ns_ = report.now_ns;
     }
@@ -113,7 +122,7 @@ class ReportChecker {
   std::int64_t limit_ns_;
   bool had_partner_ = false;  // the report before was one of two partners
   std::uint64_t daemon_ = 0, cycle_ = 0, revision_ = 0, lineage_ = 0;
-  std::int64_t now_ns_ = 0, step_ns_ = 0;  // of the report before, and since the one before it
+  std::int64_t now_ns_ = 0;  // of the report before
 };
 
 }  // namespace clearance

@@ -26,6 +26,7 @@ clearance_msg_Distances report(const char* partner, std::uint64_t cycle, std::ui
   message.cycle = cycle;
   message.lineage = lineage;
   message.now_ns = kStart + static_cast<std::int64_t>(cycle) * kPeriod;
+  message.period_ns = kPeriod;
   message.lower_all = lower;
   seal(message, 0);
   return message;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstring>
+#include <limits>
 
 namespace clearance {
 namespace {
@@ -119,9 +120,11 @@ class ReportLineages : public testing::Test {
     clearance_msg_Distances report = of_partner("left", 1, cycle);
     report.lineage = lineage;
     report.now_ns = now_ns;
+    report.period_ns = period_ns;
     return checker.check(report, kWhen).missed;
   }
   ReportChecker checker{kLimit};
+  std::int64_t period_ns = kStep;
 };
 
 TEST_F(ReportLineages, CountWhatIsMissingBetweenThemByTime) {
@@ -141,12 +144,43 @@ TEST_F(ReportLineages, CountWhatIsMissingBetweenThemByTime) {
   }
 }
 
-TEST_F(ReportLineages, CountByCyclesWhileThePeriodIsNotKnown) {
+TEST_F(ReportLineages, MissNoneWhereTheNextCycleIsToldLate) {
+  struct Change {
+    std::int64_t after_ns;
+    std::uint64_t missed;
+  };
+  for (const Change& change :
+       {Change{kStep, 0}, Change{2 * kStep - 1, 0}, Change{2 * kStep, 1}, Change{4 * kStep, 3}}) {
+    checker = ReportChecker(kLimit);
+    EXPECT_EQ(missed(1, 5, 100 * kStep), 0u);
+    EXPECT_EQ(missed(2, 6, 100 * kStep + change.after_ns), change.missed) << change.after_ns;
+  }
+}
+
+TEST_F(ReportLineages, CountInStatedPeriodsWhateverTheLastStepWas) {
+  EXPECT_EQ(missed(1, 5, 100 * kStep + kStep * 3 / 4), 0u) << "late";
+  EXPECT_EQ(missed(1, 6, 101 * kStep), 0u);
+  EXPECT_EQ(missed(2, 700, 102 * kStep), 0u);
+}
+
+TEST_F(ReportLineages, CountByCyclesWhereNoPeriodIsStated) {
+  period_ns = 0;
   EXPECT_EQ(missed(1, 5, 100 * kStep), 0u);
   EXPECT_EQ(missed(1, 7, 101 * kStep), 1u) << "two periods";
   EXPECT_EQ(missed(2, 10, 102 * kStep), 2u);
-  EXPECT_EQ(missed(3, 11, 103 * kStep), 0u) << "the next cycle of another lineage is no period";
-  EXPECT_EQ(missed(4, 15, 104 * kStep), 3u);
+  EXPECT_EQ(missed(3, 11, 103 * kStep), 0u);
+  EXPECT_EQ(missed(4, 15, 109 * kStep), 3u);
+}
+
+// No daemon states such periods.
+TEST_F(ReportLineages, CountWithForgedPeriods) {
+  for (const std::int64_t forged :
+       {std::numeric_limits<std::int64_t>::min(), std::numeric_limits<std::int64_t>::max()}) {
+    checker = ReportChecker(kLimit);
+    period_ns = forged;
+    EXPECT_EQ(missed(1, 5, 100 * kStep), 0u);
+    EXPECT_EQ(missed(2, 6, 200 * kStep), 0u);
+  }
 }
 
 }  // namespace
