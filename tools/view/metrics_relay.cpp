@@ -17,7 +17,6 @@ namespace {
 namespace beast = boost::beast;
 namespace http = boost::beast::http;
 using Local = boost::asio::local::stream_protocol;
-using Error = boost::system::error_code;
 
 constexpr std::chrono::seconds kRelayPatience{1};
 constexpr std::uint64_t kLongestText = 64 << 20;
@@ -40,7 +39,7 @@ class Question : public std::enable_shared_from_this<Question> {
       return fail(too_long.code());
     }
     stream_.expires_after(kRelayPatience);
-    stream_.async_connect(endpoint, [self = shared_from_this()](const Error& error) {
+    stream_.async_connect(endpoint, [self = shared_from_this()](const beast::error_code& error) {
       if (error) return self->fail(error);
       self->write();
     });
@@ -49,21 +48,22 @@ class Question : public std::enable_shared_from_this<Question> {
  private:
   void write() {
     http::async_write(stream_, request_,
-                      [self = shared_from_this()](const Error& error, std::size_t) {
+                      [self = shared_from_this()](const beast::error_code& error, std::size_t) {
                         if (error) return self->fail(error);
                         self->read();
                       });
   }
   void read() {
     http::async_read(
-        stream_, buffer_, answer_, [self = shared_from_this()](const Error& error, std::size_t) {
+        stream_, buffer_, answer_,
+        [self = shared_from_this()](const beast::error_code& error, std::size_t) {
           if (error) return self->fail(error);
           auto& answer = self->answer_.get();
           self->done_({answer.result_int(), std::string(answer[http::field::content_type]),
                        std::move(answer.body())});
         });
   }
-  void fail(const Error& error) {
+  void fail(const beast::error_code& error) {
     done_({static_cast<unsigned>(http::status::bad_gateway), "text/plain; charset=utf-8",
            fmt::format("clearance-view: '{0}' does not answer: {1}; expected clearanced with "
                        "--metrics {0} on this machine\n",

@@ -185,6 +185,8 @@ TEST(Distance, ByTwoPosesHasAnExactRotationOnlyWhereBothAreTurnedAlike) {
     b.orientation.w() *= sign_of_w;
     EXPECT_EQ(relative_pose(a, b).rotation_error == 0.0, is_exact) << sign_of_x << sign_of_w;
   }
+  for (const double angle : {1e-8, 1e-11, 1e-14})
+    EXPECT_GT(relative_pose(a, {{}, turned(Vec3::UnitX(), 0.3 + angle)}).rotation_error, 0.0);
 }
 
 TEST(Distance, OfPointsIsEuclid) {

@@ -210,6 +210,21 @@ TEST(ErrorAccount, IsAppliedToDepths) {
   EXPECT_GT(overlapping, 100);
 }
 
+// The facets of a body with a stated error may lie nearer to its interior point by that error.
+TEST(ErrorAccount, IsAppliedToTheBallWithinABody) {
+  Random random(8);
+  for (const double error : {1e-9, 1e-3, 0.1}) {
+    const ConvexBody exact = box_of(random, 1.0, 0.0);
+    ConvexBody body = exact;
+    body.position_error = error;
+    add_query_tables(body);
+    EXPECT_NEAR(exact.inner_radius - body.inner_radius, error, 1e-15);
+    body.position_error = 1.0;
+    add_query_tables(body);
+    EXPECT_EQ(body.inner_radius, 0.0) << "none is certain";
+  }
+}
+
 // ---- curved bodies ----
 ConvexBody curved_of(Random& random, double size, double error, double rounding) {
   const Vec3 axes =
