@@ -54,7 +54,7 @@ class MoveItPortTest : public test::CommandedCell {
   }
   ~MoveItPortTest() override {
     port_.close();
-    end();
+    end_loop();
     EXPECT_TRUE(thread_->end());
   }
   CommandResult take(moveit::RawScene message) {

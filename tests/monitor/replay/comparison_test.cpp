@@ -180,7 +180,7 @@ TEST_F(OfflineReplayTest, FindsTheBatchesThatStandFarBehindTheirReport) {
 
 TEST_F(OfflineReplayTest, UsesNoBatchThatNoReportNames) {
   record_run(cell, run);
-  rewrite([this](std::vector<Kept>& messages) {
+  rewrite([](std::vector<Kept>& messages) {
     const auto first = std::ranges::find(messages, TopicKind::kPoses, &Kept::kind);
     messages.insert(first + 1,
                     altered<clearance_msg_PoseBatch>(*first, [](clearance_msg_PoseBatch& batch) {

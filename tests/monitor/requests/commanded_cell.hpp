@@ -100,7 +100,7 @@ class HandPoses final : public PoseSource {
 
 class CommandedCell : public testing::Test, private CellParts {
  protected:
-  ~CommandedCell() override { end(); }
+  ~CommandedCell() override { end_loop(); }
 
   void start(const std::string& text = kCommandedCell, CommanderOptions options = {},
              const TickRecords::Room& room = {}) {
@@ -114,7 +114,7 @@ class CommandedCell : public testing::Test, private CellParts {
     commander = std::make_unique<SceneCommander>(*changer, *loop, loop_ended, std::move(options));
     ticking = std::thread([this] { loop->run(stop); });
   }
-  void end() {
+  void end_loop() {
     stop = true;
     if (ticking.joinable()) ticking.join();
     loop_ended = true;

@@ -26,7 +26,7 @@ struct SettledInputs {
 class RebuiltMonitor {
  public:
   RebuiltMonitor(const Scene& scene, RandomSenders& senders, const SettledInputs& inputs)
-      : scene_(scene), monitor_(scene) {
+      : monitor_(scene) {
     SceneIds ids(scene);
     std::vector<PoseSample> poses;
     std::vector<JointSample> joints;
@@ -56,7 +56,6 @@ class RebuiltMonitor {
   [[nodiscard]] const Report& report() const { return *report_; }
 
  private:
-  const Scene& scene_;
   Monitor monitor_;
   const Report* report_ = nullptr;
 };

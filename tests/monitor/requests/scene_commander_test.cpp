@@ -324,7 +324,7 @@ TEST_F(SceneCommands, AreRefusedWhenTheLoopHasEnded) {
   may_change = false;
   expect_refused({SetMargin{"table", 0.01}}, CommandStatus::kEnding);
   may_change = true;
-  end();
+  end_loop();
   expect_refused({SetMargin{"table", 0.01}}, CommandStatus::kEnding);
   expect_refused({Attach{"part", "hand"}}, CommandStatus::kEnding);
 }

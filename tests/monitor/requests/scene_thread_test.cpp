@@ -30,7 +30,7 @@ class SceneThreadTest : public test::CommandedCell {
     thread->start();
   }
   void end_thread() {
-    end();
+    end_loop();
     if (!thread) return;
     EXPECT_TRUE(thread->end());
     thread.reset();
