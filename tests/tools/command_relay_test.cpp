@@ -33,7 +33,7 @@ class RelayedCommands : public testing::Test {
       ShareRelay& of = shares[share.name];
       daemons.emplace_back(
           dds,
-          [this, &of](const Command& command) {
+          [&of](const Command& command) {
             ++(command.dry_run ? of.tried : of.asked);
             CommandResult result{
                 .client = command.client, .request = command.request, .scene_revision = kNext};
