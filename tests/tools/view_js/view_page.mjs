@@ -172,6 +172,7 @@ async function crowded() {
   const [address, before] = [await page.evaluate(() => location.href), await place()];
   await page.goto(address);
   await ready();
+  await page.waitForFunction((place) => window.clearance.view.place === place, before).catch(() => {}); // otherwise the two differ
   found.link = { address, same: before === (await place()), chosen: await page.$$eval("tr.chosen", (rows) => rows.length) };
   return found;
 }
@@ -336,11 +337,12 @@ async function seen() {
     if (known && !view.lines.shown.some(({ pair }) => isOfCamera(pair))) view.on.pairChosen(known.pair);
     return view.lines.shown.some(({ pair }) => isOfCamera(pair));
   });
-  // The hand is not in every frame.
+  // The hand and the line are not in every frame.
   const found = await page.waitForFunction(() => {
     const { view, state } = window.clearance, { seen: shown, renderer } = view, [{ points }] = shown.sensors, [{ object: camera }] = shown.cell.sensors;
     const shells = Object.fromEntries(Object.entries(shown.status[0].shells).map(([object, thickness]) => [shown.cell.objects[object].name, thickness]));
-    if (!shells.hand) return null;
+    const lines = view.lines.shown.filter(({ pair }) => [state.pairs[pair.pair].a, state.pairs[pair.pair].b].includes(camera)).length;
+    if (!shells.hand || lines === 0) return null;
     const pixels = () => {
       view.redraw();
       const gl = renderer.getContext(), { drawingBufferWidth: width, drawingBufferHeight: height } = gl, all = new Uint8Array(4 * width * height);
@@ -356,7 +358,7 @@ async function seen() {
     const without = pixels();
     points.visible = true;
     return {
-      lines: view.lines.shown.filter(({ pair }) => [state.pairs[pair.pair].a, state.pairs[pair.pair].b].includes(camera)).length,
+      lines,
       places: [...points.geometry.getAttribute("position").array], drawn, without,
       bodies: shown.cell.parts.filter(({ object }) => shown.cell.sensors.some((sensor) => sensor.object === object)).length,
       shells,
