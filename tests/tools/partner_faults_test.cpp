@@ -79,7 +79,7 @@ TEST_F(PartnerFaults, AStateWhoseBytesDoNotFitIsRefused) {
 }
 
 // While the other one is heard, a simple reader gets nothing, although the daemon leads the ticks.
-// Where the test or the daemon was held up, no leader was heard, and the half second begins again.
+// The half second begins again after the test or the daemon was held up: no leader was heard then.
 TEST_F(PartnerFaults, ALeaderIsSilentForSimpleReadersWhileAnotherOneLeads) {
   Participant client(dds);
   const dds_entity_t reader = client.reader(TopicKind::kGradients, cell.topics.gradients, 1024);
