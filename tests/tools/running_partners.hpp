@@ -62,7 +62,7 @@ class Partners : public ::testing::Test {
   void TearDown() override {
     leaders.check();
     const bool judges_lost = cell.scene.rate_hz <= 200.0 && !count_apart;
-    // Daemons tell of late ticks once a second.
+    // Daemons tell of late ticks once per second.
     if (lost != 0 && judges_lost) read_until([this] { return ran_over(); }, 2);
     EXPECT_TRUE(lost == 0 || !judges_lost || ran_over())
         << lost << " cycles are missing" << losses << logs();
