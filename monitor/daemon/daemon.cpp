@@ -309,6 +309,7 @@ void Daemon::follow(const SceneInForce& since) noexcept {
   reports_.continue_with(*next_.cell, since, *next_.queue);
   if (recording_) recording_->follow(since);
   poses_.change(*next_.cell);
+  heard_cell_ = next_.cell;
   while (reports_.is_to_continue()) std::this_thread::sleep_for(kReportsPoll);
   if (now_.ros) now_.ros->finish();
   dropped_before_ += now_.queue->dropped_reports();

@@ -137,6 +137,7 @@ class Daemon : private CellParts {
   Participant participant_;
   std::unique_ptr<SimulatedTime> time_;  // null: that of this machine
   MoveItPort moveit_;
+  std::shared_ptr<const Cell> heard_cell_;  // outlives the threads of `poses_`; null: the first one
   PoseReader poses_;
   const DaemonIdentity identity_;
   SystemClock clock_;

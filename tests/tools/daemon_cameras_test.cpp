@@ -3,6 +3,7 @@
 // Oracles: closed forms for a made scene, which tests/shared/ros_camera.hpp renders.
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <chrono>
 #include <cmath>
 #include <csignal>
@@ -10,6 +11,7 @@
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <thread>
 
 #include "monitor/client/client.hpp"
 #include "monitor/client/questions.hpp"
@@ -236,6 +238,15 @@ TEST_F(DaemonCameras, GoesOnWhenTheCellChanges) {
   daemon->signal(SIGHUP);
   EXPECT_TRUE(step_until(kPeriodMs, send, told("scene-refused", {"sensors"}))) << daemon->output();
   EXPECT_TRUE(is_measured());
+  // Frames come until the daemon has ended, and use the changed cell.
+  std::atomic<bool> has_ended{false};
+  std::thread camera_thread([&] {
+    for (; !has_ended; std::this_thread::sleep_for(std::chrono::milliseconds(1))) send();
+  });
+  daemon->signal(SIGTERM);
+  EXPECT_EQ(daemon->wait(), 0) << daemon->output();
+  has_ended = true;
+  camera_thread.join();
 }
 
 // The robot, and with it a camera in its hand, moves while frames come. The first frames come
