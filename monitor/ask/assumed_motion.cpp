@@ -33,7 +33,7 @@ std::optional<std::string> Posture::set_free(const StatedJoint& stated, OthersMo
     return "the age of joint \"" + stated.name + "\" is not a number from 0 on";
   // An object that rests by assumption is no part of the question, like one that moves by one.
   if (others == OthersMove::kNot) {
-    free_variables_.push_back({.variable = variable});
+    free_variables_.push_back({.variable = variable, .age = stated.age});
     return std::nullopt;
   }
   const JointVariable& joint = scene_.variables[variable];

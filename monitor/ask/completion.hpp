@@ -12,10 +12,6 @@
 
 namespace clearance {
 
-// A joint of the robot in question that moves faster than this does not stay where it is, rad/s or
-// m/s. Drives at rest report less.
-inline constexpr double kRestSpeed = 2e-3;
-
 // Adds to `held`, `joints`, `poses`, `seen` and `contacts` what the question lacks. `frames` are
 // the last ones of the sensors; their ages are those of the frames in use. Returns why it cannot: a
 // sentence that names the inputs which are unknown, late or contradicted, or a joint that is taken

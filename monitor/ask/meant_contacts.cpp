@@ -57,6 +57,10 @@ std::optional<std::string> MotionSearch::take_contacts(const Question& question)
   if (contacts_.empty()) return std::nullopt;
   const auto key = [](const Meant& each) { return std::tuple(each.first, each.second); };
   std::ranges::sort(contacts_, {}, key);
+  const auto twice = std::ranges::adjacent_find(contacts_, {}, key);
+  if (twice != contacts_.end())
+    return "two contacts are of \"" + scene_.objects[twice->first].name + "\" and \"" +
+           scene_.objects[twice->second].name + "\"; expected one of each pair";
   contact_of_.assign(pairs_.pairs().size(), kNotMeant);
   for (std::uint32_t pair = 0; pair < contact_of_.size(); ++pair) {
     std::uint32_t first = 0, second = 0;

@@ -89,12 +89,19 @@ std::optional<std::string> MotionSearch::fault(const Question& question) const {
       return posture_.is_left_out(scene_.pairs[pair].first) ||
              posture_.is_left_out(scene_.pairs[pair].second);
     });
-    if (!is_left_out) continue;
-    if (!pairs.empty()) {
-      return "the margin of \"" + of.a + (of.b.empty() ? "" : "\" and \"" + of.b) +
-             "\" is of pairs that the question leaves out";
-    }
-    return why_no_pairs_between(scene_, of.a, of.b);
+    if (pairs.empty()) return why_no_pairs_between(scene_, of.a, of.b);
+    const std::string named = "the margin of \"" + of.a + (of.b.empty() ? "" : "\" and \"" + of.b);
+    if (is_left_out) return named + "\" is of pairs that the question leaves out";
+    // What is absent keeps each margin.
+    const auto is_there = [&](std::uint32_t pair) {
+      return posture_.is_present(scene_.pairs[pair].first) &&
+             posture_.is_present(scene_.pairs[pair].second);
+    };
+    const auto is_asked = [&](std::uint32_t pair) {
+      return is_asked_about(scene_.pairs[pair].first, scene_.pairs[pair].second);
+    };
+    if (std::ranges::any_of(pairs, is_there) && std::ranges::none_of(pairs, is_asked))
+      return named + "\" is of pairs without a link of a robot that the question moves or holds";
   }
   if (!question.profile) return std::nullopt;
   const ProfileRequest& profile = *question.profile;
@@ -107,11 +114,19 @@ std::optional<std::string> MotionSearch::fault(const Question& question) const {
     if (at == scene_.objects.end()) return "the cell has no object \"" + *name + "\"";
   }
   for (std::uint32_t i = 0; i < pairs_.pairs().size(); ++i) {
-    if (is_in_profile(profile, i)) return std::nullopt;
+    std::uint32_t first = 0, second = 0;
+    note_pair(i, first, second);
+    if (is_in_profile(profile, i) && is_asked_about(first, second)) return std::nullopt;
   }
   if (profile.first.empty()) return std::nullopt;
   return "the pair of the profile, \"" + profile.first + "\" and \"" + profile.second +
-         "\", is not watched with a link of a robot";
+         "\", is not watched with a link of a robot that the question moves or holds";
+}
+
+// Of other pairs, the question says nothing.
+bool MotionSearch::is_asked_about(std::uint32_t first, std::uint32_t second) const noexcept {
+  return (posture_.is_link(first) && posture_.is_of_question(first)) ||
+         (posture_.is_link(second) && posture_.is_of_question(second));
 }
 
 std::optional<std::string> MotionSearch::ask(const Question& question, Answer& answer) {

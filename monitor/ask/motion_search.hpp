@@ -77,6 +77,7 @@ class MotionSearch {
   struct SeparatedPair {
     std::uint32_t zone = 0, pair = 0;  // Scene::zones; PartPairs
     std::uint32_t robot = 0;           // the link that the zone limits
+    std::uint32_t human = 0;           // the object that it comes near
     double margins = 0.0;              // m
     double human_speed = 0.0;          // m/s
   };
@@ -190,6 +191,7 @@ class MotionSearch {
   // A margin counts for no other pairs from now on; all pairs: none is exempt.
   void exempt_kept(double margin);
   void exempt_all_but(const MarginBetween& margin);
+  [[nodiscard]] bool is_asked_about(std::uint32_t first, std::uint32_t second) const noexcept;
   void mark(const std::vector<std::uint32_t>& pairs, std::uint8_t value);  // of objects; in exempt_
   void find_first(const Stretch& stretch, const OpenList& list, MarginAnswer& answer) noexcept;
   void find_first_in_halves(const Stretch& stretch, double middle, const OpenList& list,

@@ -285,6 +285,22 @@ const LinkState& Posture::link_state(std::uint32_t object) const noexcept {
   return kinematics_.links(robot_of_object_[object])[link_of_object_[object]];
 }
 
+double Posture::age(std::uint32_t object) const noexcept {
+  if (!is_link(object)) return age_[object];
+  double oldest = 0.0;
+  for (std::uint32_t robot = robot_of_object_[object];;) {
+    for (const FreeVariable& free : free_variables_) {
+      const bool is_joint = free.variable < scene_.variables.size();
+      if (is_joint && scene_.variables[free.variable].robot == robot)
+        oldest = std::max(oldest, free.age);
+    }
+    const RobotBase& base = scene_.robots[robot].base;
+    if (base.kind == RobotBase::Kind::kObject) return std::max(oldest, age_[base.object]);
+    if (base.kind != RobotBase::Kind::kLink) return oldest;
+    robot = base.robot;
+  }
+}
+
 void Posture::place_link_part(std::uint32_t index) noexcept {
   PosedPart& part = parts_[index];
   place_at(link_state(part.object).pose, part);

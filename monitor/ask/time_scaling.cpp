@@ -15,11 +15,10 @@ namespace {
 // Factors nearer to each other than this are not told apart.
 constexpr double kLeastFactor = 1e-4;
 
-// The largest factor that a pair at `distance`, m, admits, rounded down. `human_speed`: of the
-// person; `speed`: of the robot as the motion is timed, m/s.
-double factor_of(const Separation& terms, double human_speed, double distance,
+// The largest factor that a pair at `distance`, m, admits, rounded down. `speed`: of the robot as
+// the motion is timed, m/s.
+double factor_of(const Separation& terms, const Approach& approach, double distance,
                  double speed) noexcept {
-  const Approach approach{.human_speed = human_speed};
   const double limit = largest_speed(terms, approach, distance);
   if (limit == kInfinity) return kInfinity;
   if (limit > 0.0 && speed > 0.0) return rounded_down(limit / speed);
@@ -39,13 +38,14 @@ void MotionSearch::collect_separated() {
       const std::uint32_t robot = human_is_first ? objects.second : objects.first;
       const double margins =
           rounded_up(scene_.objects[objects.first].margin + scene_.objects[objects.second].margin);
-      const Object& human = scene_.objects[human_is_first ? objects.first : objects.second];
-      const double human_speed = zone.separation->human_speed.value_or(human.approach_speed);
+      const std::uint32_t human = human_is_first ? objects.first : objects.second;
+      const double human_speed =
+          zone.separation->human_speed.value_or(scene_.objects[human].approach_speed);
       for (std::uint32_t p = 0; p < pairs_.pairs().size(); ++p) {
         std::uint32_t first = 0, second = 0;
         note_pair(p, first, second);
         if (first == objects.first && second == objects.second)
-          separated_.push_back({z, p, robot, margins, human_speed});
+          separated_.push_back({z, p, robot, human, margins, human_speed});
       }
     }
   }
@@ -168,27 +168,29 @@ void MotionSearch::scale(const Stretch& stretch, std::size_t count, double known
     const Separation& terms = *scene_.zones[separated.zone].separation;
     const TipMotion motion = tip_motion(bundle, stretch, middle, posture_);
     Pair at = pair_at(separated.pair, motion);
-    // S_p counts the person's path from the present instant on. So nothing is assumed before.
+    // S_p counts the person's path since the pose was measured. So nothing is assumed before.
+    const Approach people{.human_speed = separated.human_speed,
+                          .human_age = posture_.age(separated.human)};
     ObjectApproach approach = at.approach;
     approach.nearing = {};
     const double radius = at.tip.sphere_in_world.radius;
     const double fastest = largest_tip_speed(motion, radius);
     const double apart = gap(at, separated.pair, kInfinity);
     const double loss = rounded_up(motion.moved + motion.error + approach.moved);
-    double lower = factor_of(terms, separated.human_speed,
-                             rounded_down(apart - loss - separated.margins), fastest);
+    double lower =
+        factor_of(terms, people, rounded_down(apart - loss - separated.margins), fastest);
     if (lower < enough()) {
       const PairAtMiddle found = query(at, separated.pair);
       const double over =
           lower_over(found, at.base, at.tip, bundle.keeps_direction, motion, approach, kInfinity);
-      lower = std::max(lower, factor_of(terms, separated.human_speed,
-                                        rounded_down(over - separated.margins), fastest));
+      lower = std::max(lower,
+                       factor_of(terms, people, rounded_down(over - separated.margins), fastest));
       const double slowest = largest_tip_speed({.twist = motion.twist, .nearing = {}}, radius);
       // With stated errors, no larger factor is certain.
       const double now =
           rounded_up(found.upper + motion.error - 2.0 * bundle.model_error - separated.margins);
-      const double upper = rounded_up(
-          rounded_up(factor_of(terms, separated.human_speed, now, (1.0 - 0x1p-40) * slowest)));
+      const double upper =
+          rounded_up(rounded_up(factor_of(terms, people, now, (1.0 - 0x1p-40) * slowest)));
       if (upper < scaling.factor_above) {
         scaling.factor_above = upper;
         scaling.time = middle;

@@ -23,6 +23,10 @@ struct PresentJoint {
   double velocity = 0.0;  // per second; NaN: not known
 };
 
+// A joint that moves faster than this does not stay where it is, rad/s or m/s. Drives at rest
+// report less.
+inline constexpr double kRestSpeed = 2e-3;
+
 struct PresentObject {
   std::uint32_t object = 0;  // index into Scene::objects
   PresentPose pose = {};

@@ -55,6 +55,23 @@ TEST_F(AskOfALine, NamesAKeyThatNobodyReads) {
           "'held' in a motion beside");
 }
 
+TEST_F(AskOfALine, RefusesListsWithAnEntryTooMany) {
+  const auto refused = [&](const std::string& more, const std::string& text) {
+    const std::string found = error(more);
+    EXPECT_NE(found.find(text), std::string::npos) << more << ": " << found;
+  };
+  const auto payload = [](const std::string& shape) {
+    return R"(, "payloads": [{"name": "b", "link": "finger", )" + shape + "}]";
+  };
+  refused(payload(R"("box": [1, 1, 1, 9])"), "the box of a payload");
+  refused(payload(R"("cylinder": [1, 1, 9])"), "[radius, length]");
+  refused(payload(R"("vertices": [[0, 0, 0, 9], [1, 0, 0], [0, 1, 0], [0, 0, 1]])"), "a vertex");
+  refused(R"(, "contacts": [{"pair": ["finger", "pin", "a"], "depth": 0.1}])", "of a contact");
+  refused(R"(, "profile": {"pair": ["finger", "pin", "a"]})", "of a profile");
+  refused(R"(, "margins": [{"between": ["arm", "pin", "a"], "m": 0.1}])", "of a margin");
+  refused(R"(, "joints_of_others": {"x": [0, 1, 9]})", "[position, age]");
+}
+
 TEST_F(AskOfALine, RefusesAKeyThatStandsTwice) {
   EXPECT_NE(error(R"(, "positions": [[0], [0.1]])").find("\"positions\" again"), std::string::npos);
   EXPECT_NE(error(R"(, "poses": {"a": {}, "a": {}})").find("\"a\" again"), std::string::npos);

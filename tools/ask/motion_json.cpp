@@ -37,6 +37,12 @@ std::vector<std::string> keys_of_a_motion() {
   return keys;
 }
 
+template <class T, std::size_t N>
+std::array<T, N> entries(const Json& list, const std::string& where, const char* expected) {
+  expect_list(list, N, where, expected);
+  return list.get<std::array<T, N>>();
+}
+
 std::vector<double> rows_of(const Json& line, const char* key, std::size_t columns) {
   std::vector<double> numbers;
   for (const Json& row : line.at(key)) {
@@ -80,17 +86,18 @@ std::optional<ConvexBody> shape_of(const Json& entry) {
   }
   ShapeResult made = ShapeError{};
   if (entry.contains("box")) {
-    const auto size = entry["box"].get<std::array<double, 3>>();
+    const auto size = entries<double, 3>(entry["box"], "the box of a payload", "[x, y, z]");
     made = box({0.5 * size[0], 0.5 * size[1], 0.5 * size[2]});
   } else if (entry.contains("sphere")) {
     made = point(Vec3::Zero(), entry["sphere"].get<double>());
   } else if (entry.contains("cylinder")) {
-    const auto size = entry["cylinder"].get<std::array<double, 2>>();
+    const auto size =
+        entries<double, 2>(entry["cylinder"], "the cylinder of a payload", "[radius, length]");
     made = cylinder(size[0], 0.5 * size[1]);
   } else if (entry.contains("vertices")) {
     std::vector<Vec3> vertices;
     for (const Json& vertex : entry["vertices"]) {
-      const auto v = vertex.get<std::array<double, 3>>();
+      const auto v = entries<double, 3>(vertex, "a vertex of a payload", "[x, y, z]");
       vertices.push_back({v[0], v[1], v[2]});
     }
     made = polyhedron_from_vertices(vertices);
@@ -119,7 +126,8 @@ Payload payload_of(const Json& entry) {
 
 MeantContact contact_of(const Json& entry) {
   refuse_unknown_keys(entry, {"pair", "depth", "until", "distance"}, "a contact");
-  const auto pair = entry.at("pair").get<std::array<std::string, 2>>();
+  const auto pair =
+      entries<std::string, 2>(entry.at("pair"), "the pair of a contact", R"(["a", "b"])");
   return {.first = pair[0],
           .second = pair[1],
           .depth = entry.at("depth").get<double>(),
@@ -134,7 +142,8 @@ std::optional<ProfileRequest> profile_of(const Json& entry) {
   refuse_unknown_keys(entry, {"pair", "tolerance", "points"}, "a profile");
   ProfileRequest profile;
   if (entry.contains("pair")) {
-    const auto pair = entry["pair"].get<std::array<std::string, 2>>();
+    const auto pair =
+        entries<std::string, 2>(entry["pair"], "the pair of a profile", R"(["a", "b"])");
     profile.first = pair[0];
     profile.second = pair[1];
   }
@@ -206,7 +215,8 @@ void read_margins(const Json& margins, Question& question) {
     if (is_of_zone) {
       of.a = margin["zone"].get<std::string>();
     } else {
-      const auto sides = margin.at("between").get<std::array<std::string, 2>>();
+      const auto sides =
+          entries<std::string, 2>(margin.at("between"), "\"between\" of a margin", R"(["a", "b"])");
       of.a = sides[0];
       of.b = sides[1];
     }
@@ -240,7 +250,8 @@ Question read_question(const Json& line, const Question& defaults) {
     for (const auto& [name, stated] : line["joints_of_others"].items()) {
       StatedJoint joint{.name = name};
       if (stated.is_array()) {
-        const auto [position, age] = stated.get<std::array<double, 2>>();
+        const auto [position, age] =
+            entries<double, 2>(stated, "joints_of_others." + name, "[position, age]");
         joint.position = position;
         joint.age = age;
       } else {

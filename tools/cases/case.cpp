@@ -55,13 +55,17 @@ const Json& member(const Json& object, const char* key, const std::string& where
   return *found;
 }
 
+void expect_list(const Json& list, std::size_t size, const std::string& where,
+                 const char* expected) {
+  if (!list.is_array() || list.size() != size)
+    throw BadLine(fmt::format("{}: expected {}, found {}", where, expected, shown(list)));
+}
+
 namespace {
 
 template <std::size_t N>
 std::array<double, N> numbers(const Json& list, const std::string& where, const char* expected) {
-  if (!list.is_array() || list.size() != N) {
-    throw BadLine(fmt::format("{}: expected {}, found {}", where, expected, shown(list)));
-  }
+  expect_list(list, N, where, expected);
   std::array<double, N> out{};
   for (std::size_t k = 0; k < N; ++k) {
     if (!list[k].is_number())

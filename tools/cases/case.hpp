@@ -2,6 +2,7 @@
 // too.
 #pragma once
 
+#include <cstddef>
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 #include <string>
@@ -33,6 +34,10 @@ struct DistanceCase {
 // "a payload".
 void refuse_unknown_keys(const nlohmann::json& object, const std::vector<std::string>& known,
                          const std::string& what);
+
+// Throws BadLine for what is no list of `size` entries. `expected` shows one: "[x, y, z]".
+void expect_list(const nlohmann::json& list, std::size_t size, const std::string& where,
+                 const char* expected);
 
 // Read parts of a line. `where` names the place ("pose_a") for the message. All throw BadLine.
 [[nodiscard]] const nlohmann::json& member(const nlohmann::json& object, const char* key,

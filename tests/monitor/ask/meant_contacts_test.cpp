@@ -113,6 +113,9 @@ TEST(MeantContacts, OfTheQuestionTakeThePlaceOfThoseOfTheScene) {
   EXPECT_TRUE(std::holds_alternative<std::string>(ask(scene, question)));
   question.contacts->front() = {.first = "finger", .second = "post", .depth = 0.0};
   EXPECT_TRUE(std::holds_alternative<std::string>(ask(scene, question)));
+  question.contacts = {{{.first = "finger", .second = "post", .depth = 0.051},
+                        {.first = "post", .second = "finger", .depth = 0.001}}};
+  EXPECT_TRUE(std::holds_alternative<std::string>(ask(scene, question))) << "two of one pair";
 }
 
 // What a cell refuses of a contact, a question refuses by the same sentence.

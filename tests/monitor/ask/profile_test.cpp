@@ -48,6 +48,34 @@ TEST(Profile, OfAllPairsIsNeverAboveThatOfOne) {
   EXPECT_TRUE(std::holds_alternative<std::string>(ask(scene, question)));
 }
 
+// An answer of 'free' would be about nothing.
+TEST(MarginsBetween, PairsThatTheQuestionDoesNotMoveAreRefused) {
+  const test::ScratchFolder folder;
+  test::write_text(folder / "scara.urdf", test::kScaraUrdf);
+  const Scene scene = scene_of(
+      "name: test\nunits: {length: m, angle: rad}\nrobots:\n  - {name: arm, urdf: scara.urdf}\n"
+      "  - {name: other, prefix: o_, urdf: scara.urdf, base: {pose: {xyz: [9, 0, 0]}}}\nobjects:\n"
+      "  - {name: post, max_speed: 2, sphere: {radius: 0.1}}\n"
+      "  - {name: wall, fixed: true, sphere: {radius: 0.1}, pose: {xyz: [0, 9, 0]}}\n"
+      "pairs: [{between: [arm, post]}, {between: [post, wall]}, {between: [other, wall]}]\n",
+      folder / "cell.yaml");
+  Question question = swing(-1.0, 0.6);
+  question.others = OthersMove::kNot;
+  question.poses = {{.object = "post", .world_from_object = {.position = {3.0, 0.0, 0.0}}}};
+  for (const char* joint : {"o_shoulder", "o_elbow", "o_push"})
+    question.joints.push_back({.name = joint});
+  const auto is_refused = [&](const std::string& a, const std::string& b) {
+    question.margins_between = {{a, b, 0.1}};
+    return std::holds_alternative<std::string>(ask(scene, question));
+  };
+  EXPECT_FALSE(is_refused("arm", "post"));
+  EXPECT_TRUE(is_refused("post", "wall"));
+  EXPECT_TRUE(is_refused("other", "wall"));
+  question.margins_between.clear();
+  question.profile = {.first = "o_finger", .second = "wall"};
+  EXPECT_TRUE(std::holds_alternative<std::string>(ask(scene, question)));
+}
+
 // The person walks at 0.1 m/s; the robot reacts in 0.5 s and stops in 0.5 s and 0.1 m.
 constexpr const char* kZone =
     "zones:\n  - {name: people, between: [post, finger], enter_below: 0.01, leave_above: 0.02, "
@@ -70,6 +98,13 @@ TEST(TimeScaling, IsTheLargestFactorThatKeepsTheProtectiveDistance) {
   EXPECT_GE(answer.scaling.factor, truth * (1.0 - 1e-3));
   EXPECT_GE(answer.scaling.factor_above, truth - 1e-9);
   EXPECT_NEAR(answer.scaling.time, 1.25, 0.1);
+  // The person has been walking for the age of the pose, as S_p of a tick has it.
+  question.poses[0].age = 2.0;
+  const Answer later = answered(scene, question);
+  const double slower = (admitted - 0.1 * 2.0) / 0.5 / (0.8 * 2.05);
+  EXPECT_LE(later.scaling.factor, slower + 1e-9);
+  EXPECT_GE(later.scaling.factor, slower * (1.0 - 1e-3));
+  question.poses[0].age = 0.0;
   // The person is too near for a robot that stands.
   question.poses[0].world_from_object.position = {2.3, 0.0, 0.0};
   EXPECT_EQ(answered(scene, question).scaling.factor, 0.0);
@@ -111,6 +146,13 @@ TEST(TimeScaling, DoesNotDependOnTheOrderOfRobots) {
     for (const JointVariable& variable : scene.variables)
       if (variable.name != "shoulder") question.held.push_back({variable.name, 0.0});
     found.push_back(answered(scene, question).scaling);
+    // Positions of the person's joints that are old count as an old pose does.
+    std::erase_if(question.held, [&](const HeldJoint& held) {
+      const bool is_of_arm = held.name == "elbow" || held.name == "push";
+      if (!is_of_arm) question.joints.push_back({.name = held.name, .age = 1.0});
+      return !is_of_arm;
+    });
+    EXPECT_LT(answered(scene, question).scaling.factor_above, found.back().factor);
     EXPECT_TRUE(found.back().is_limited);
     EXPECT_LT(found.back().factor_above, kInfinity);
   }
