@@ -48,8 +48,10 @@ A motion is a JSON object:
               stopping for its robots; time_scaling keeps the margins as well, and tries no factor above 1
 Keys that describe it are not read: kind, how, what, nominal, recording, robot, least, first_below, evals, gap. Any
 other key is refused, and so is one that stands twice.
-An answer has id; without, if sensors are left out; lower, upper: bounds of the least distance over the whole motion, m (0 where bodies overlap);
-t, pair, points: where upper is attained (points in the world); for each margin a verdict, free, below or
+An answer has id; without, if sensors are left out; start_deviation, of a bag's motion: the largest difference of a
+joint's first waypoint from where the bag has it (null: not known); lower, upper: bounds of the least distance over the
+whole motion, m (0 where bodies overlap); t, pair, points: where upper is attained (points in the world);
+for each margin a verdict, free, below or
 undecided, and first_below: null if free, {"t": [from, to], "pair"} if below. The distance is at least the margin
 at all instants before `from`, and below it at `to`. An undecided margin has "above_until" instead of [from, to].
 profile is a list of {"t": [from, to], "lower", "upper", "pair"} that covers the motion; time_scaling has factor,

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <span>
+#include <string_view>
 #include <utility>
 #include <variant>
 
@@ -18,9 +19,9 @@ constexpr std::int64_t kSecondNs = 1'000'000'000;
 constexpr const char* kDiagnostics = "/diagnostics";
 
 // Decodes in the thread of the desk: a motion may begin where the joints are then.
-std::string make_motion(std::span<const std::byte> cdr, const Scene& scene, const InputState& state,
-                        Question& question) {
-  auto made = motion_of(cdr, CdrBytes::kOfReader, scene, state);
+std::string make_motion(std::string_view topic, std::span<const std::byte> cdr, const Scene& scene,
+                        const InputState& state, Question& question) {
+  auto made = motion_of(topic, cdr, CdrBytes::kOfReader, scene, state);
   if (auto* reason = std::get_if<std::string>(&made)) return std::move(*reason);
   question.motion = std::get<JointTrajectory>(std::move(made));
   return "";
@@ -91,8 +92,9 @@ void TrajectoryPort::take(Topic& topic, const CdrSample& sample) {
   queued.bytes_to_make = sample.bytes().size();
   const auto bytes =
       std::make_shared<const std::vector<std::byte>>(sample.bytes().begin(), sample.bytes().end());
-  queued.make = [bytes](const Scene& scene, const InputState& state, Question& question) {
-    return make_motion(*bytes, scene, state, question);
+  queued.make = [bytes, name = topic.name](const Scene& scene, const InputState& state,
+                                           Question& question) {
+    return make_motion(name, *bytes, scene, state, question);
   };
   queued.answer = [this, &topic](const QuestionResult& result) { write(topic, result); };
   if (put_(std::move(queued))) return;

@@ -74,8 +74,7 @@ TEST_F(AskOfABag, HoldsTheOtherJointsWhereTheJointStatesHaveThem) {
                  trajectory(2 * kSecondNs, {"shoulder"}, {{0.0, {-1.0}}, {2.0, {0.6}}})}),
             0)
       << output;
-  ASSERT_EQ(answers.size(), 1u);
-  EXPECT_EQ(answers[0]["id"], "/arm/joint_trajectory at 1.000 s");
+  EXPECT_EQ(answers.at(0)["id"], "/arm/joint_trajectory at 1.000 s");
   EXPECT_NEAR(answers[0]["upper"], 0.15, 1e-6);
   EXPECT_NEAR(answers[0]["t"], 1.25, 1e-3);
   EXPECT_EQ(answers[0]["verdict"]["0.05"], "free");
@@ -175,7 +174,8 @@ TEST_F(AskOfABag, TakesVelocitiesAndRefusesAccelerations) {
     return ask({joint_state(kSecondNs, kSecondNs, kRest),
                 trajectory(2 * kSecondNs, {"shoulder"}, points)});
   };
-  ASSERT_EQ(with_points({{0.0, {-1.0}}, {2.0, {-1.0}}}), 0) << output;
+  ASSERT_EQ(with_points({{0.0, {-1.25}}, {2.0, {-1.0}}}), 0) << output;
+  EXPECT_EQ(answers.at(0)["start_deviation"], 0.25);
   const double held = answers.at(0)["upper"];
   ASSERT_EQ(with_points({{0.0, {-1.0}, {3.0}}, {2.0, {-1.0}, {-3.0}}}), 0) << output;
   EXPECT_LT(answers.at(0)["upper"].get<double>(), held - 0.1) << "it leaves its chord";

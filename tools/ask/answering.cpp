@@ -11,6 +11,7 @@
 #include <utility>
 #include <variant>
 
+#include "config/text/sentences.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/app/program.hpp"
 #include "monitor/ask/completion.hpp"
@@ -114,11 +115,14 @@ std::string Answering::answer(const std::vector<BagMotion>& motions, std::ostrea
   const std::string error = for_each_inputs(
       places_.at("")->cell, options_.motions, motions, [&](std::size_t i, InputsOfMotion inputs) {
         AskedMotion motion = take_next(place_of(inputs.cell));
-        auto made = motion_of(motions[i].cdr, CdrBytes::kUnchecked, motion.scene(), inputs.state);
+        auto made = motion_of(motions[i].topic, motions[i].cdr, CdrBytes::kUnchecked,
+                              motion.scene(), inputs.state);
         if (auto* const reason = std::get_if<std::string>(&made)) {
           motion.error = std::move(*reason);
         } else {
           motion.question.motion = std::get<JointTrajectory>(std::move(made));
+          motion.start_deviation =
+              start_deviation(motion.scene(), inputs.state, motion.question.motion).deviation;
           motion.error =
               complete(motion.scene(), inputs.state, std::move(inputs.frames), motion.question)
                   .value_or("");
@@ -194,6 +198,7 @@ void Answering::write(AskedMotion& motion, std::ostream& out) {
   if (motion.error.empty()) {
     if (!motion.id.is_null()) line["id"] = motion.id;
     line.update(answer_line(motion.answer, motion.scene(), motion.question));
+    if (motion.start_deviation) line["start_deviation"] = *motion.start_deviation;
     for (const MarginAnswer& margin : motion.answer.margins)
       undecided_ += margin.verdict == Verdict::kUndecided ? 1 : 0;
     expect(motion);
@@ -270,7 +275,8 @@ void Answering::expect(AskedMotion& motion) {
 
 void Answering::summarise() {
   std::sort(times_us_.begin(), times_us_.end());
-  print(stderr, "{} motions, {} with errors, {} verdicts undecided", lines_, bad_, undecided_);
+  print(stderr, "{}, {} with errors, {} undecided", counted(lines_, "motion"), bad_,
+        counted(undecided_, "verdict"));
   if (options_.expected) print(stderr, ", {} not as expected", failed_);
   if (!times_us_.empty()) {
     print(stderr, "; p50 {:.1f} us, p99 {:.1f} us, max {:.1f} us a motion",

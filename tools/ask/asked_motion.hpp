@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <utility>
 
@@ -26,6 +27,8 @@ struct AskedMotion {
   Answer answer = {};
   std::string error = {};  // why there is no question or no answer; empty: there is
   bool as_expected = true;
+  // Rad or m: of a joint's first waypoint from where the bag has it; nothing: it is not of a bag.
+  std::optional<double> start_deviation = {};
 
   [[nodiscard]] const Scene& scene() const noexcept { return place->cell.scene; }
   [[nodiscard]] std::string name() const {

@@ -35,6 +35,7 @@ std::string read_motions(const std::filesystem::path& bag, std::vector<BagMotion
     if (message.topic->type != kTrajectory) continue;
     motions.push_back({fmt::format("{} at {:.3f} s", message.topic->name,
                                    1e-9 * static_cast<double>(log_ns - *first_ns)),
+                       message.topic->name,
                        {message.payload.begin(), message.payload.end()},
                        log_ns,
                        clock_ns});

@@ -11,6 +11,7 @@ namespace clearance {
 
 struct BagMotion {
   std::string id;  // "/arm/joint_trajectory at 12.345 s": the time since the first message
+  std::string topic;
   std::vector<std::byte> cdr;
   std::int64_t log_ns = 0;
   std::int64_t clock_ns = 0;  // of the last message of /clock before it; 0: there is none
