@@ -154,17 +154,20 @@ PlanningSceneReader::Read PlanningSceneReader::scene_of_yaml(const std::string& 
           0, fmt::format("allowed_collision_matrix.{}: {}", fault->field, fault->reason)};
     }
   }
-  std::map<std::string, Pose> frames;
+  struct Placed {
+    std::string in;
+    Pose pose;
+  };
+  std::map<std::string, Placed> frames;
   for (const moveit::FixedFrame& frame : scene.fixed_frame_transforms) {
     auto pose = moveit::checked_pose(frame.child_from_frame, "fixed_frame_transforms");
     if (const auto* fault = std::get_if<moveit::FieldFault>(&pose))
       return FileMistake{0, fault->field + ": " + fault->reason};
-    frames[frame.frame_id] = std::get<Pose>(pose);
+    frames[frame.frame_id] = {frame.child_frame_id, std::get<Pose>(pose)};
   }
   const std::string first =
       scene.collision_objects.empty() ? "" : scene.collision_objects[0].frame_id;
-  const std::string base =
-      frames.contains(first) ? scene.fixed_frame_transforms[0].child_frame_id : first;
+  const std::string base = frames.contains(first) ? frames[first].in : first;
   for (std::size_t i = 0; i < scene.collision_objects.size(); ++i) {
     const moveit::CollisionObject& message = scene.collision_objects[i];
     const std::string path = fmt::format("world.collision_objects[{}]", i);
@@ -174,8 +177,14 @@ PlanningSceneReader::Read PlanningSceneReader::scene_of_yaml(const std::string& 
                                         "fixed_frame_transforms",
                                         path, message.frame_id, base)};
     }
+    if (frame != frames.end() && frame->second.in != base) {
+      return FileMistake{0, fmt::format("{}.header.frame_id: found '{}', which "
+                                        "fixed_frame_transforms place in '{}'; expected a frame "
+                                        "that they place in '{}'",
+                                        path, message.frame_id, frame->second.in, base)};
+    }
     auto object =
-        object_of(message, frame == frames.end() ? Pose{} : frame->second, path, file_node);
+        object_of(message, frame == frames.end() ? Pose{} : frame->second.pose, path, file_node);
     if (auto* mistake = std::get_if<FileMistake>(&object)) return std::move(*mistake);
     made.objects.push_back(std::get<Object>(std::move(object)));
   }

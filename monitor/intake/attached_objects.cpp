@@ -87,7 +87,7 @@ void MessageTranslator::append_attached(const AttachedCollisionObject& message,
   if (!body.is_bounded)
     fail(path + "object.planes", "found a plane; expected bounded shapes of what is attached");
   KnownObject changed = *present;
-  add_parts(changed, std::move(body), Pose{}, path + "object.");
+  add_parts(changed, message.object, std::move(body), path + "object.");
   add_touch(touch_of(message), changed.entry);
   put(id, std::move(changed));
 }

@@ -159,22 +159,21 @@ void MessageTranslator::keep_subframes(const CollisionObject& message, const std
     kept_.subframes_[message.id + "/" + message.subframe_names[i]] = {message.id, poses[i]};
 }
 
-void MessageTranslator::add_parts(KnownObject& object, Body body, const Pose& object_from_frame,
+// MoveIt makes the pose of an only shape that of the object, which stays where it is: the pose is
+// lost.
+void MessageTranslator::add_parts(KnownObject& object, const CollisionObject& message, Body body,
                                   const std::string& path) const {
   YamlNode* parts = clearance::find(object.entry, "parts");
   if (parts == nullptr)
     fail(path + "id",
          "found an object without a list of parts; expected one that MoveIt has added");
-  const Pose object_from_new = compose(object_from_frame, body.frame_from_object);
-  Diagnostics none("");
-  const Quantities quantities({scene_.unit, AngleUnit::kRadian}, none);
-  for (YamlNode& part : body.parts.items) {
-    const YamlNode* stated = clearance::find(part, "pose");
-    const Pose new_from_part =
-        stated == nullptr ? Pose{} : quantities.pose(*stated).value_or(Pose{});
-    set(part, "pose", pose_node(compose(object_from_new, new_from_part), scene_.unit));
-    parts->items.push_back(std::move(part));
+  if (message.shapes() == 1 && !is_same(body.frame_from_object, message.pose)) {
+    fail(path + "pose",
+         fmt::format("found the pose of the only shape in an APPEND to '{}', which MoveIt does not "
+                     "use; expected all shapes in one ADD",
+                     message.id));
   }
+  for (YamlNode& part : body.parts.items) parts->items.push_back(std::move(part));
 }
 
 }  // namespace clearance::moveit

@@ -35,6 +35,12 @@ T value_of(std::variant<T, FieldFault> result, const std::string& path) {
   return {-(turn * pose.position), turn};
 }
 
+[[nodiscard]] inline bool is_same(const Pose& a, const Pose& b) {
+  constexpr double kNear = 1e-6;  // m, and of a quaternion
+  const Pose off = compose(inverse(a), b);
+  return off.position.norm() <= kNear && off.orientation.vec().norm() <= kNear;
+}
+
 // `path` begins the names of fields in faults.
 class MessageTranslator {
  public:
@@ -53,11 +59,15 @@ class MessageTranslator {
   template <class Translate>
   void guarded(const std::string& id, const Translate& translate);
   void add(const CollisionObject& message, const std::string& path);
-  void append(const CollisionObject& message, KnownObject& object, const std::string& path);
-  void add_parts(KnownObject& object, Body body, const Pose& object_from_frame,
+  void append(const CollisionObject& message, const KnownObject& object, const std::string& path);
+  // Adds parts in the frame of the object.
+  void add_parts(KnownObject& object, const CollisionObject& message, Body body,
                  const std::string& path) const;
   void remove(const CollisionObject& message, const std::string& path);
   void move(const CollisionObject& message, const std::string& path);
+  // Moves parts in the frame of the object. False: the message has no poses of shapes.
+  bool move_parts(const CollisionObject& message, KnownObject& object,
+                  const std::string& path) const;
   void attach_as_it_is(const AttachedCollisionObject& message, const std::string& path);
   void attach_with_shapes(const AttachedCollisionObject& message, const std::string& path);
   void append_attached(const AttachedCollisionObject& message, const std::string& path);

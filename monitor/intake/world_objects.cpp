@@ -1,6 +1,11 @@
 // CollisionObject: objects of the world.
 #include <fmt/format.h>
 
+#include <cstddef>
+#include <string>
+#include <utility>
+#include <vector>
+
 #include "monitor/intake/message_translator.hpp"
 
 namespace clearance::moveit {
@@ -26,13 +31,22 @@ void MessageTranslator::add(const CollisionObject& message, const std::string& p
   put(message.id, std::move(object));
 }
 
-// The object stays where it is, and the new parts are where the message has them.
-void MessageTranslator::append(const CollisionObject& message, KnownObject& object,
+// In MoveIt the object stays where it is, and the new parts are in its frame, wherever the message
+// has it.
+void MessageTranslator::append(const CollisionObject& message, const KnownObject& object,
                                const std::string& path) {
-  const Pose frame = frame_of(message, path);
   Body body = body_of_message(message, path);
+  const Pose& stated = body.frame_from_object;
+  if (!is_same(message.pose, Pose{}) &&
+      !is_same(object.pose, compose(frame_of(message, path), stated))) {
+    fail(path + "pose",
+         fmt::format("found another pose than that of '{}' in an APPEND, which MoveIt "
+                     "does not use; expected none, and poses of the shapes in the "
+                     "frame of the object",
+                     message.id));
+  }
   KnownObject changed = object;
-  add_parts(changed, std::move(body), compose(inverse(object.pose), frame), path);
+  add_parts(changed, message, std::move(body), path);
   put(message.id, std::move(changed));
 }
 
@@ -67,7 +81,35 @@ void MessageTranslator::move(const CollisionObject& message, const std::string& 
     result_.not_understood.push_back(fmt::format("shapes in a MOVE of '{}'", message.id));
   const Pose pose = value_of(checked_pose(message.pose, "pose"), path);
   object->pose = compose(frame_of(message, path), pose);
+  if (object->is_moveits) set(object->entry, "pose", pose_node(object->pose, scene_.unit));
+  if (move_parts(message, *object, path)) return put(message.id, *object);
   result_.changes.emplace_back(clearance::Place{message.id, object->pose});
+}
+
+// MoveIt takes the poses of a message that has no shapes, too.
+bool MessageTranslator::move_parts(const CollisionObject& message, KnownObject& object,
+                                   const std::string& path) const {
+  std::vector<std::pair<std::string, Pose>> poses;
+  const auto add = [&](const std::vector<Pose>& some, const char* field) {
+    for (const Pose& pose : some)
+      poses.emplace_back(fmt::format("{}[{}]", field, poses.size()), pose);
+  };
+  add(message.primitive_poses, "primitive_poses");
+  add(message.mesh_poses, "mesh_poses");
+  add(message.plane_poses, "plane_poses");
+  if (poses.empty()) return false;
+  YamlNode* const parts = object.is_moveits ? clearance::find(object.entry, "parts") : nullptr;
+  const std::size_t expected = parts == nullptr ? 0 : parts->items.size();
+  if (poses.size() != expected) {
+    fail(path + "primitive_poses",
+         fmt::format("found {} poses of shapes in a MOVE of '{}'; expected {} or none",
+                     poses.size(), message.id, expected));
+  }
+  for (std::size_t i = 0; i < expected; ++i) {
+    const Pose pose = value_of(checked_pose(poses[i].second, poses[i].first), path);
+    set(parts->items[i], "pose", pose_node(pose, scene_.unit));
+  }
+  return true;
 }
 
 void MessageTranslator::translate(const CollisionObject& message, const std::string& path) {

@@ -52,7 +52,8 @@ class MoveItPartners : public Partners {
   // One more sphere of the object, far from everything that moves. Done twice, it would be there
   // twice.
   static CollisionObject sphere(int number) {
-    CollisionObject object = moveit::sphere_object("heap", "world", {0.3 * number, 0, 0.5});
+    CollisionObject object = moveit::sphere_object("heap", "world", {0, 0, 0.5});
+    object.primitive_poses = {at(0.3 * number, 0, 0)};
     object.operation =
         static_cast<std::uint8_t>(number == 0 ? Operation::kAdd : Operation::kAppend);
     return object;
@@ -124,6 +125,7 @@ TEST_F(MoveItPartners, TheNextLeaderKnowsTheFramesOfEarlierMessages) {
   EXPECT_TRUE(read_until([this] { return states[PartnerState::kMissing] > 40; })) << logs();
   CollisionObject on_bench = sphere(1);
   on_bench.frame_id = "bench";
+  on_bench.pose.position.x() = -3;  // where the object is: other poses are refused
   send(on_bench);
   EXPECT_TRUE(have(2)) << logs();
 }

@@ -218,6 +218,25 @@ TEST_F(YamlScenes, AreRefusedByFieldAndLine) {
   EXPECT_THAT(mistakes("is_diff: false\nrobot", "is_diff: [\nrobot"), mistake_at(":3:17"));
 }
 
+TEST_F(YamlScenes, HaveObjectsInFramesThatTheyPlaceInOneFrame) {
+  std::string text = kYaml;
+  const auto replace = [&](const std::string& from, const std::string& to) {
+    text.replace(text.find(from), from.size(), to);
+  };
+  replace("frame_id: world}\n    id: ground", "frame_id: bench}\n    id: ground");
+  replace("fixed_frame_transforms:\n",
+          "fixed_frame_transforms:\n- header: {frame_id: bench}\n  child_frame_id: world\n"
+          "  transform: {translation: {x: 3.0}, rotation: {w: 1.0}}\n");
+  const Scene scene = read("kitchen.yaml", text);
+  const auto ground = std::ranges::find(scene.objects, "ground", &Object::name);
+  ASSERT_NE(ground, scene.objects.end());
+  EXPECT_EQ(ground->world_from_object.position, Vec3(3, 0, 0.1));
+  replace("child_frame_id: world", "child_frame_id: shelf");
+  test::write_text(folder_ / "kitchen.yaml", text);
+  EXPECT_THAT(errors_of(cell("kitchen.yaml"), folder_ / "cell.yaml"),
+              mistake_at(":3:17", "world.collision_objects[2].header.frame_id", "'shelf'"));
+}
+
 // The hand is an object here; links carry likewise. The unit of the cell is mm.
 TEST_F(YamlScenes, HaveWhatIsAttachedAndThePairsThatTheMatrixAllows) {
   std::string text = kYaml;
