@@ -11,6 +11,10 @@ namespace clearance {
 namespace {
 
 constexpr float kEmptyLow = std::numeric_limits<float>::infinity();
+constexpr double kTooNear = -std::numeric_limits<double>::infinity();
+// The least depth of what is nearer than can be measured, in least depths of the range. Nearer
+// places are in the camera.
+constexpr double kNearest = 0x1p-10;
 
 float rounded_down(double x) noexcept {
   const auto f = static_cast<float>(x);
@@ -140,11 +144,18 @@ void DepthCloud::fill(const DepthsOf& depths_of) noexcept {
 template <class Pixel>
 void DepthCloud::fill_from(const DepthImage& image, const DepthError& error,
                            const DepthRange& range) noexcept {
+  // Two roundings of the sum and one of e(z): far below 2^-40 of z.
+  const auto error_at = [&](double z) { return error.at(z) + 0x1p-40 * z; };
+  const Depths too_near = {rounded_down(kNearest * range.least),
+                           rounded_up(range.least + error_at(range.least))};
   fill([&](std::size_t, std::size_t, std::uint32_t u, std::uint32_t v, Depths& depths) {
     const double z = Pixel::read(image.bytes.data() + v * image.step + u * Pixel::kBytes);
+    if (z == kTooNear) {
+      depths = too_near;
+      return true;
+    }
     if (!(z >= range.least && z <= range.greatest)) return false;
-    // Two roundings of the sum and one of e(z): far below 2^-40 of z.
-    const double e = error.at(z) + 0x1p-40 * z;
+    const double e = error_at(z);
     depths = {rounded_down(z - e), rounded_up(z + e)};
     return true;
   });

@@ -32,7 +32,9 @@ struct DepthError {
 struct DepthImage {
   enum class Format : std::uint8_t {
     kMillimetres16,  // uint16, 0: missing
-    kMetres32,       // float32, NaN, infinite, 0 or negative: missing
+    // float32, NaN, infinity, 0 or negative: missing. -infinity: nearer than the least depth (REP
+    // 117), so that the slab of its pixel ends there.
+    kMetres32,
   };
   Format format = Format::kMetres32;
   std::uint32_t width = 0, height = 0;
@@ -46,14 +48,16 @@ struct DepthRange {
 
 enum class DepthBuild : std::uint8_t {
   kBuilt,
-  kBadCamera,   // a length is not positive or finite, or a side ray is over 51 degrees off the axis
-  kWrongSize,   // the image and the camera differ, or have more pixels than the capacity
+  kBadCamera,  // a focal length is not positive or finite, or a side ray is over 51 degrees off the
+               // axis
+  kWrongSize,  // the image and the camera differ, or have more pixels than the capacity
   kShortImage,  // fewer bytes than rows
   kBadRange,    // not 0 < least <= greatest <= kGreatestDepth, or e(z) is negative or reaches z
 };
 
 inline constexpr double kGreatestDepth = 1e4;  // m
-// The largest sine between a side ray and the optical axis. No corner of a slab is sharp up to it.
+// The largest sine between a side ray and the optical axis. Up to it, no corner of a slab is so
+// sharp that queries lose digits.
 inline constexpr double kWidestSine = 7.0 / 9.0;
 
 class DepthCloud {
@@ -122,7 +126,8 @@ class DepthCloud {
   // false, and changes nothing, if the picture is larger than the capacity, or the range is bad.
   [[nodiscard]] bool build_unseen(const DepthCloud& seen, const DepthRange& range) noexcept;
   // After that: leaves out the places behind the pixels that `seen` has lost since. Those that
-  // `others`, a copy of it from before, has lost as well stay; null: there are none.
+  // `others` has lost as well were taken out for other bodies, and stay unseen. `others` is a copy
+  // of the picture without the images of those; null: nothing was taken out for others.
   void leave_out_behind(const DepthCloud& seen, const DepthCloud* others) noexcept;
   // After that: the whole cone of this pixel is unseen. Call refit() afterwards.
   void leave_open(std::size_t block, std::size_t lane) noexcept;
@@ -136,8 +141,9 @@ class DepthCloud {
   // many. Call refit() afterwards.
   std::size_t crop(const Vec3& centre, double radius) noexcept;
 
-  [[nodiscard]] std::size_t size() const noexcept { return size_; }        // pixels with a slab
-  [[nodiscard]] std::size_t missing() const noexcept { return missing_; }  // or out of range
+  [[nodiscard]] std::size_t size() const noexcept { return size_; }  // pixels with a slab
+  // Pixels without one: missing, or out of range.
+  [[nodiscard]] std::size_t missing() const noexcept { return missing_; }
   // No vertex is farther from the origin of the frame, m.
   [[nodiscard]] double extent() const noexcept { return extent_; }
   // Another number after each build, of any cloud. Copies of a cloud share it.

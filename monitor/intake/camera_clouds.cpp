@@ -52,7 +52,7 @@ bool PointsCloud::read(const RawSensorMessage&, const Sensor& sensor) {
 FrameFault PointsCloud::elements(const Sensor& sensor, std::vector<MeasuredPoint>& out,
                                  double& excess) const {
   excess = 0.0;
-  return measured_points(points_, sensor, out) ? FrameFault::kNoFault : FrameFault::kCannotBuild;
+  return measured_points(points_, sensor, out);
 }
 
 // Only of where the point is: a camera whose depth stands still may go on with its colours.

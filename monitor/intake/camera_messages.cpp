@@ -123,6 +123,8 @@ constexpr auto kWords = [] {
        "far less of it has depth within the range than of the frame before: it may be torn"},
       {kRobotElsewhere, "tf has a robot elsewhere",
        "tf has the base of a robot elsewhere than the cell, so the sensor may be misplaced"},
+      {kTooNear, "a point too near",
+       "a coordinate is -infinity: a point is nearer than can be measured, and nothing says where"},
   }};
 }();
 static_assert([] {
@@ -226,8 +228,10 @@ FrameFault view(const sensor_msgs_msg_dds__CameraInfo_& message, PinholeCamera& 
                           k[6] == 0.0 && k[7] == 0.0 && k[8] == 1.0;
   const bool has_projection =
       std::any_of(message.p, message.p + 12, [](double x) { return x != 0.0; });
-  const bool agrees = !has_projection || (p[0] == k[0] && p[1] == 0.0 && p[2] == k[2] &&
-                                          p[3] == 0.0 && p[5] == k[4] && p[6] == k[5]);
+  const bool agrees =
+      !has_projection ||
+      (p[0] == k[0] && p[1] == 0.0 && p[2] == k[2] && p[3] == 0.0 && p[4] == 0.0 && p[5] == k[4] &&
+       p[6] == k[5] && p[7] == 0.0 && p[8] == 0.0 && p[9] == 0.0 && p[10] == 1.0 && p[11] == 0.0);
   if (!is_pinhole || !agrees) return FrameFault::kIntrinsics;
   out = {message.width, message.height, k[0], k[4], k[2], k[5]};
   return FrameFault::kNoFault;

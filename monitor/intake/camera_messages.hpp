@@ -59,8 +59,9 @@ enum class FrameFault : std::uint8_t {
   kFewSeen,      // a smaller share of its elements has depth than the cell states
   kSeenFell,     // far fewer of its elements have depth than of the frame before
   kRobotElsewhere,  // tf places the camera, and a robot elsewhere than the cell does
+  kTooNear,         // of points: one is nearer than can be measured, and no ray says where
 };
-inline constexpr std::size_t kFrameFaults = 37;
+inline constexpr std::size_t kFrameFaults = 38;
 
 // A sentence without its end: what is wrong with the message.
 [[nodiscard]] const char* text(FrameFault fault) noexcept;

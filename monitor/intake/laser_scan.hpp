@@ -24,7 +24,7 @@ class ScanCloud final : public MessageCloud {
  public:
   // Rays that are farther apart have gaps that no ball may span, rad.
   static constexpr double kWidestIncrement = 0.1;
-  // The angle of a ray, rad: float32 does not tell much larger ones apart.
+  // The largest angle of a ray, rad: float32 does not tell much larger ones apart.
   static constexpr double kLargestAngle = 4.0 * std::numbers::pi;
 
   Sample<sensor_msgs_msg_dds__LaserScan_> sample;

@@ -8,6 +8,7 @@ namespace clearance {
 namespace {
 
 constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
+constexpr float kTooNear = -std::numeric_limits<float>::infinity();
 
 float float_at(const std::byte* bytes) noexcept {
   float value = 0.0F;
@@ -34,18 +35,20 @@ MeasuredPoint ball(float x, float y, float z, const Sensor& sensor, bool& is_wid
 
 }  // namespace
 
-bool measured_points(const PointsView& view, const Sensor& sensor,
-                     std::vector<MeasuredPoint>& points) {
+FrameFault measured_points(const PointsView& view, const Sensor& sensor,
+                           std::vector<MeasuredPoint>& points) {
   points.clear();
   bool is_wide = false;
   for (std::uint32_t row = 0; row < view.height; ++row) {
     const std::byte* point = view.bytes.data() + row * view.row_step;
     for (std::uint32_t column = 0; column < view.width; ++column, point += view.point_step) {
-      points.push_back(ball(float_at(point + view.x), float_at(point + view.y),
-                            float_at(point + view.z), sensor, is_wide));
+      const float x = float_at(point + view.x), y = float_at(point + view.y),
+                  z = float_at(point + view.z);
+      if (x == kTooNear || y == kTooNear || z == kTooNear) return FrameFault::kTooNear;
+      points.push_back(ball(x, y, z, sensor, is_wide));
     }
   }
-  return !is_wide;
+  return is_wide ? FrameFault::kCannotBuild : FrameFault::kNoFault;
 }
 
 }  // namespace clearance

@@ -2,8 +2,8 @@
 //
 // Both forms list the nodes depth first, children in ascending order. The binary form has two bits
 // a child: free, occupied, with children, or nothing. The full form has the log-odds of each node
-// as float32, and a byte that says which children follow; a leaf is occupied from 0, which is a
-// probability of one half.
+// as float32, and a byte that says which children follow. A leaf is occupied if its log-odds are at
+// least 0, a probability of one half.
 #pragma once
 
 #include <cstddef>

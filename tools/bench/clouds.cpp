@@ -88,7 +88,7 @@ void build_message(benchmark::State& state) {
     PointsView view;
     if (!decoder.decode(bytes, message) ||
         clearance::view(*message, most, view) != FrameFault::kNoFault ||
-        !measured_points(view, sensor, points) ||
+        measured_points(view, sensor, points) != FrameFault::kNoFault ||
         cloud.build(points, {{0, 0, 2}, 10.0}) != CloudBuild::kBuilt) {
       state.SkipWithError("refused");
     }

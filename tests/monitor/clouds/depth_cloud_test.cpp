@@ -60,7 +60,7 @@ PinholeCamera camera(std::uint32_t width, std::uint32_t height) {
   return {width, height, focal, 0.98 * focal, 0.5 * width + 0.4, 0.5 * height - 0.7};
 }
 
-// A wall, a step in depth, noise, or few pixels far apart.
+// A wall, a step in depth, noise, or few pixels far apart. Some are nearer than the range.
 std::vector<float> drawn(Random& random, const PinholeCamera& c) {
   const int kind = random.integer(0, 3);
   const double middle = random.uniform(0.5, 3.0), slope = random.uniform(-0.3, 0.3);
@@ -72,7 +72,8 @@ std::vector<float> drawn(Random& random, const PinholeCamera& c) {
       if (kind == 2) z = u * 2 < c.width ? 0.5 * middle : middle;
       if (kind == 3) z = random.uniform(0.3, 3.5);
       const bool is_missing = random.chance(kind == 3 ? 0.9 : 0.02);
-      pixels.push_back(is_missing ? kNan : static_cast<float>(z));
+      const float missing = random.chance(0.2) ? -std::numeric_limits<float>::infinity() : kNan;
+      pixels.push_back(is_missing ? missing : static_cast<float>(z));
     }
   }
   return pixels;
@@ -259,6 +260,29 @@ TEST(DepthCloud, SlabsContainTheDepthAndItsErrorAndNoMoreThanTwoFloats) {
   EXPECT_EQ(met, cloud.size());
   EXPECT_EQ(met, 938U);  // from 250 mm, which is pixel 13 (252 mm), to 4000 mm, which is pixel 950
   EXPECT_EQ(met + cloud.missing(), pixels.size());
+}
+
+// As REP 117 says. A LaserScan has the same rule.
+TEST(DepthCloud, MinusInfinityIsSomethingNearerThanTheRangeAndOtherNumbersOutsideAreMissing) {
+  const PinholeCamera c = camera(8, 6);
+  constexpr float kEndless = std::numeric_limits<float>::infinity();
+  const auto size_of = [&](float depth) {
+    return built(picture(c, std::vector<float>(48, depth))).size();
+  };
+  for (const float depth : {kEndless, kNan, 0.0F, -1.0F, 0.2F, 4.1F}) EXPECT_EQ(size_of(depth), 0u);
+  std::vector<float> pixels(48, 2.0F);
+  pixels[21] = -kEndless;
+  const DepthCloud cloud = built(picture(c, pixels));
+  EXPECT_EQ(cloud.size(), 48u);
+  // Places on the ray of that pixel, up to the range, have no distance from the cloud.
+  const Vec3 ray((21 % 8 - c.cx) / c.fx, (21 / 8 - c.cy) / c.fy, 1.0);
+  SlabBody scratch;
+  for (const double z : {0.001, 0.1, 0.25, 0.251}) {
+    CloudTracking tracking;
+    const RelativePose pose = relative_pose({}, {});
+    const ConvexBody place = made(point(z * ray, 0.0));
+    EXPECT_LE(nearest_element(place, cloud, scratch, pose, tracking).lower, 1e-12) << z;
+  }
 }
 
 TEST(DepthCloud, ImagesOfEverySizeKeepEveryPixelOnce) {

@@ -147,6 +147,7 @@ TEST_F(CameraStreamTest, ACameraInfoThatIsNoPlainPinholeIsRefused) {
   EXPECT_EQ(with([&](InfoText& t) { t.k[2] = nan; }), Fault::kIntrinsics);
   EXPECT_EQ(with([](InfoText& t) { t.p[0] = 9; }), Fault::kIntrinsics);
   EXPECT_EQ(with([](InfoText& t) { t.p[3] = -0.4; }), Fault::kIntrinsics) << "a stereo baseline";
+  EXPECT_EQ(with([](InfoText& t) { t.p[7] = 0.4; }), Fault::kIntrinsics) << "a vertical one";
   EXPECT_EQ(with([](InfoText& t) { t.width = 0; }), Fault::kNoPixels);
 }
 
