@@ -9,8 +9,8 @@
 namespace clearance {
 
 // A joint's rotation is within this of the exact one, rad. Its translation is within this share of
-// its length. The origin's quaternion, made of three angles by some forty operations, is within
-// 2^-48 of its half. The half angle's sine and cosine are within 2^-50, and two products of
+// its length. The origin's quaternion is made of three angles by some forty operations, and half of
+// its angle is within 2^-48. The half angle's sine and cosine are within 2^-50, and two products of
 // quaternions round eight times more.
 inline constexpr double kJointError = 0x1p-46;
 // A position that is scaled and shifted (mimic) is within this, for each radian or metre.
@@ -19,8 +19,8 @@ inline constexpr double kPositionError = 0x1p-51;
 // The bounds hold up to this length, m. It limits the positions of joints that state no limits, and
 // the distance of an object that carries a robot.
 inline constexpr double kLargestLength = 1e4;
-// The bounds hold for all angles up to 1e6 rad. Every joint gets the error of a rescaled angle of
-// at least this size, rad, although only joints that mimic others rescale angles.
+// Every joint is charged with the rounding of at least this angle, rad, scaled as a joint that
+// mimics another scales it. A joint with a larger range is charged with that, up to 1e6 rad.
 inline constexpr double kLeastSureAngle = 1e3;
 
 // No point within r of a link's origin is farther than shift + turn r from its place by forward

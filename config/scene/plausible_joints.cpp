@@ -57,7 +57,7 @@ bool may_wrap(JointType type, std::uint32_t place) noexcept {
 
 }  // namespace
 
-void set_plausible_motion(const Robot& robot, std::vector<JointVariable>& variables) {
+void set_plausible_motion(Robot& robot, std::vector<JointVariable>& variables) {
   for (const RobotJoint& joint : robot.joints) {
     for (std::uint32_t place = 0; place < variables_of(joint.type); ++place) {
       JointVariable& variable = variables[joint.variable + place];
@@ -65,7 +65,12 @@ void set_plausible_motion(const Robot& robot, std::vector<JointVariable>& variab
       variable.first_of_joint = joint.variable;
       variable.unstated_speed = default_speed(joint.type, place, robot.is_of_base(joint.variable));
       variable.limit_tolerance = tolerance_of(variable, is_angle(joint.type, place));
-      variable.wraps = may_wrap(joint.type, place) && all_turn_fully(robot, joint.variable + place);
+      if (!may_wrap(joint.type, place)) continue;
+      variable.wraps = all_turn_fully(robot, joint.variable + place);
+      if (variable.wraps) continue;
+      robot.notes.push_back(
+          "positions of the continuous joint '" + variable.name +
+          "' must not wrap: what mimics it is elsewhere after a full turn of this joint");
     }
   }
 }

@@ -23,7 +23,8 @@ inline constexpr double kLeastAngleTolerance = 0.02;    // rad
 inline constexpr double kLeastLengthTolerance = 0.002;  // m
 
 // Sets unstated_speed, limit_tolerance, wraps and first_of_joint of the robot's variables. The
-// limits must be final, and `variables` those of all robots.
-void set_plausible_motion(const Robot& robot, std::vector<JointVariable>& variables);
+// limits must be final, and `variables` those of all robots. The robot's notes name what is
+// continuous and must not wrap.
+void set_plausible_motion(Robot& robot, std::vector<JointVariable>& variables);
 
 }  // namespace clearance

@@ -49,11 +49,12 @@ struct JointVariable {
   // The joint's name with the robot's prefix. Joints of several variables have MoveIt's names for
   // them: NAME/x, NAME/theta, NAME/trans_x, NAME/rot_w ...
   std::string name;
-  // The limits of its position, and of its speed per second; infinite: not stated.
+  // The limits of its position, rad or m, and of its speed, rad/s or m/s; infinite: not stated.
   double lower = -std::numeric_limits<double>::infinity();
   double upper = std::numeric_limits<double>::infinity();
   double max_speed = std::numeric_limits<double>::infinity();
-  // The limits of URDF 1.2, per s2; infinite: not stated. They count where the cell says so.
+  // The limits of URDF 1.2, rad/s2 or m/s2; infinite: not stated. They count where the cell says
+  // so.
   double urdf_acceleration = std::numeric_limits<double>::infinity();
   double urdf_deceleration = std::numeric_limits<double>::infinity();
   // The speed above which positions are not plausible, if `max_speed` is not stated. It does not

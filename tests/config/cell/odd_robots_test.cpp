@@ -85,6 +85,19 @@ TEST_F(OddRobots, AnSrdfOfAnotherNameIsNotedWhereItsLinksExist) {
   EXPECT_THAT(errors(kWalker, kSelf), mistake_at("walker.srdf:3:3", "'fot'"));
 }
 
+TEST_F(OddRobots, AContinuousJointThatMustNotWrapIsNoted) {
+  const auto no_wrapping =
+      testing::Contains(testing::AllOf(HasSubstr("'grip'"), HasSubstr("must not wrap")));
+  EXPECT_THAT(scene(kWalker, kSelf).robots.front().notes, testing::Not(no_wrapping));
+  std::string text = kWalkerUrdf;
+  const std::string twice = "multiplier=\"-2\"";
+  test::write_text(folder_ / "walker_description/walker.urdf",
+                   text.replace(text.find(twice), twice.size(), "multiplier=\"0.5\""));
+  const Scene cell = scene(kWalker, kSelf);
+  EXPECT_THAT(cell.robots.front().notes, no_wrapping);
+  EXPECT_FALSE(cell.variables[2].wraps);
+}
+
 TEST_F(OddRobots, AMissingPackageIsToldOnceAndAnEmptyOneAsSuch) {
   std::string text = kWalkerUrdf;
   const std::string from = "package://walker_description/tip.obj";
