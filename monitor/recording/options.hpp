@@ -48,8 +48,8 @@ struct RecordingOptions {
   // to the bit.
   std::uint64_t ticks_every = 1;
   EventOptions events = {};
-  // One frame of a sensor in so many is kept whole, of others only that a tick was shown them. 0:
-  // none. A replay gives the same reports only with all of them (1).
+  // One frame of a sensor in so many is kept whole, of the others only a note that a tick saw them.
+  // 0: none. A replay gives the same reports only with all of them (1).
   std::uint64_t clouds_every = 1;
 };
 

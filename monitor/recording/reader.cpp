@@ -122,6 +122,7 @@ RecordingOutline outline(const std::filesystem::path& file) {
   const std::optional<bool> catalogue = says_kind(reader.summary(), TopicKind::kCatalogue);
   found.has_reports = reports.value_or(false);
   found.has_gradients = says_kind(reader.summary(), TopicKind::kGradients).value_or(false);
+  found.has_zones = says_kind(reader.summary(), TopicKind::kZones).value_or(true);
   bool first = true;
   RecordedMessage message;
   CdrDecoder decoder;

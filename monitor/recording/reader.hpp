@@ -92,6 +92,7 @@ struct RecordingOutline {
   std::optional<Sample<clearance_msg_Catalogue>> catalogue;  // the first one
   bool has_reports = false;
   bool has_gradients = false;       // as far as its summary tells
+  bool has_zones = true;            // false: its summary tells that it has none
   std::string build;                // of the reports; empty: the recording does not say
   std::string cell_file;            // where its cell stood; empty: it keeps no files of the cell
   bool some_without_pairs = false;  // of the reports: RecordingOptions::pairs_every

@@ -9,7 +9,7 @@
 //   const OfflineReplay replay =
 //       replay_offline(std::get<Cell>(cell), "run.mcap",
 //                      {.expect_min_distance = 0.05, .expect_no_zone = {"stop"}});
-//   EXPECT_TRUE(replay.ok()) << replay.text();
+//   EXPECT_TRUE(replay.ok() && replay.is_whole()) << replay.text();
 #pragma once
 
 #include <array>
@@ -127,7 +127,7 @@ struct ExpectationOutcome {
 // The result of a whole replay.
 struct OfflineReplay {
   std::string error;                    // not empty: it could not be run at all
-  std::string damage;                   // not empty: the recording was read up to a damage
+  std::string damage;                   // not empty: the recording was read up to a damaged place
   bool stopped = false;                 // options.stop ended it: nothing is known of the ticks that
                                         // follow
   std::vector<std::string> notes;       // what a person should know, in sentences
@@ -145,7 +145,10 @@ struct OfflineReplay {
   std::array<std::uint64_t, kRejects> rejected{};
   std::optional<ReferenceTotals> reference;
 
+  // Nothing is wrong with the ticks that were run.
   [[nodiscard]] bool ok() const noexcept { return error.empty() && failures.empty(); }
+  // The recording was run to its end.
+  [[nodiscard]] bool is_whole() const noexcept { return !stopped && damage.empty(); }
   // Everything that went wrong or is worth knowing, a line each.
   [[nodiscard]] std::string text() const;
 };

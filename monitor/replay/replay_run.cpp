@@ -37,6 +37,7 @@ ReplayRun::ReplayRun(SceneHistory& history, TickFeed& feed, const OfflineReplayO
     : scene_(&history.first().scene),
       options_(options),
       has_reports_(outline.has_reports),
+      has_zones_(outline.has_zones),
       some_without_pairs_(outline.some_without_pairs),
       other_build_(other_build(outline.build)),
       feed_(feed),
@@ -245,7 +246,8 @@ void ReplayRun::compare(const TickInput& input, const Report& report, const char
 // Zone changes come on a topic of their own and are compared when all are known. The recording must
 // be whole, since a change can depend on any tick before.
 void ReplayRun::compare_zones() {
-  if (!options_.compare || *options_.compare != Comparison::kBits || differs_) return;
+  if (!options_.compare || *options_.compare != Comparison::kBits || differs_ || !has_zones_)
+    return;
   if (!result_.damage.empty() || cycle_offset_ != 0 || restarted_ || gap_noted_) return;
   // Cycles do not tell the scene of a zone then. The reports list the active zones, too.
   if (result_.joins > 0 && has_changed_) return;

@@ -62,7 +62,7 @@ class ReplayRun {
 
   const Scene* scene_;  // of the last tick
   const OfflineReplayOptions& options_;
-  bool has_reports_, some_without_pairs_;
+  bool has_reports_, has_zones_, some_without_pairs_;
   std::string other_build_;  // what to add where something differs
   TickFeed& feed_;
   RecordedLoop loop_;

@@ -39,8 +39,8 @@ std::vector<std::string> unheard_sensors(const Sensors* sensors, const Scene& sc
     if (!is_unheard(status)) continue;
     if (log == nullptr || !log->has_topics()) {
       texts.push_back(
-          fmt::format("sensor '{}': the recording has no image that this cell can use: an image "
-                      "serves for a cell with the same entry of its sensor",
+          fmt::format("sensor '{}': the recording has no image that this cell can use: the daemon "
+                      "used none, as its log says, or the cell has another entry of this sensor",
                       sensor.name));
       continue;
     }

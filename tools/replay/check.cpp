@@ -247,7 +247,7 @@ int finish(const OfflineReplay& replay, Outputs& outputs) {
     written = outputs.close();
   }
   if (!replay.ok() || !written) return kFailed;
-  return replay.stopped || !replay.damage.empty() ? kIncomplete : kOk;
+  return replay.is_whole() ? kOk : kIncomplete;
 }
 
 int replay_in(const Cell& cell, const CheckArguments& arguments,
@@ -304,7 +304,10 @@ int replay_in(const Cell& cell, const CheckArguments& arguments,
       return kFailed;
     }
   }
-  if (!replay.error.empty()) return kFailed;
+  if (!replay.error.empty()) {
+    outputs.abandon();
+    return kFailed;
+  }
   print_summary(replay, arguments, elapsed.count());
   const bool explained = tracked.tell();
   const int finished = finish(replay, outputs);

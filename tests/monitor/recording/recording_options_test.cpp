@@ -53,6 +53,16 @@ TEST_F(RecordingOptionsTest, EveryTenthReportKeepsItsPairsAndAllTicksCompareToTh
   EXPECT_EQ(400u, same.compared);
 }
 
+// What was left out cannot differ.
+TEST_F(RecordingOptionsTest, WithoutZonesTheReportsCompareToTheBit) {
+  record({});
+  ASSERT_GT(count(TopicKind::kZones), 0u);
+  record({.left_out = {TopicKind::kZones}});
+  ASSERT_EQ(count(TopicKind::kZones), 0u);
+  const OfflineReplay same = replay({.compare = Comparison::kBits});
+  EXPECT_TRUE(same.ok()) << same.text();
+}
+
 // Without pairs, a report still differs if its minimum does. A report that lost its pairs also
 // differs, if the recording keeps all pairs.
 TEST_F(RecordingOptionsTest, ThinnedReportsAreComparedAllTheSame) {
