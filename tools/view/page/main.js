@@ -172,9 +172,9 @@ function address(withCamera) {
     camera: withCamera ? view.place : asked.camera, shells: view.shells.visible, stops: view.stopGhosts.visible, robots: view.visuals.mode, seen: view.seen.mode,
   });
 }
-// The cell is another one: the page is loaded anew and looks from the same place. The server knows the time.
+// The cell is another one: the page is loaded anew, and looks from the same place if a person has chosen it. The server knows the time.
 function changeCell() {
-  const link = new URL(address(true), location.href);
+  const link = new URL(address(view.fitted && !view.follows), location.href);
   link.searchParams.delete("t");
   state.history.keep?.(linked());
   history.replaceState(null, "", link);
