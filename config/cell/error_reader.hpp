@@ -12,7 +12,7 @@ namespace clearance {
 struct Scene;
 
 // Reads `errors:` and states them in robots and objects; those of attached objects and of shapes
-// stay in `scene`, too, for what comes later. It comes after everything is placed.
+// stay in `scene`, too, for objects that are added later. It comes after everything is placed.
 void read_errors(const YamlNode& node, const Quantities& quantities, RobotList& robots,
                  ObjectList& list, Scene& scene);
 

@@ -14,9 +14,9 @@
 
 namespace clearance {
 
-// The person that a robot's description is of.
+// The entry `person` of a robot.
 struct DescribedPerson {
-  const YamlNode* node = nullptr;  // null: it is of a robot
+  const YamlNode* node = nullptr;  // null: the robot is no person
   std::string name;                // of the robot that stands for the person
   double stature = 0.0;            // m
   std::string id;                  // of the body; as Person::id

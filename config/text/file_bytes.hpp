@@ -10,7 +10,7 @@
 
 namespace clearance {
 
-// Opens a regular file for reading, and waits for no writer, as that of a FIFO. Returns the
+// Opens a regular file for reading. It never waits, as for a writer of a FIFO. Returns the
 // descriptor, which the caller closes, or -1 with errno: EISDIR for a folder, EINVAL for a FIFO, a
 // device or a socket.
 [[nodiscard]] int open_to_read(const std::filesystem::path& path) noexcept;
@@ -22,7 +22,7 @@ struct CloseFile {
 [[nodiscard]] std::unique_ptr<std::FILE, CloseFile> open_file(
     const std::filesystem::path& path) noexcept;
 
-// `reason` ends a sentence: "'x.stl' cannot be opened: ...".
+// `reason` is a clause: "'x.stl' cannot be opened: ...".
 struct FileFault {
   std::string reason;
 };

@@ -12,8 +12,8 @@ namespace clearance {
 
 using LinkNames = std::set<std::string>;
 
-// Returns the faults of an SRDF of another robot: links that the URDF does not have. A different
-// name is one of them then, and a note of the SRDF otherwise.
+// Returns the faults of an SRDF of another robot: links that the URDF does not have. If there
+// are any, another name of the robot is a fault as well. Otherwise it is a note of the SRDF.
 [[nodiscard]] UrdfFaults faults_of(Srdf& srdf, const std::filesystem::path& srdf_file,
                                    const UrdfRobot& robot, const std::filesystem::path& urdf_file);
 

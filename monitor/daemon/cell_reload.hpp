@@ -23,6 +23,7 @@ class CellReload {
   struct Actions {
     // Names the daemon that this one follows; empty: none; nothing: it is not known yet.
     std::function<std::optional<std::string>()> followed;
+    // Hands a command to the scene thread. Returns false if too many wait.
     std::function<bool(GivenCommand)> put;
     // Returns false if the cell has not changed by this command.
     std::function<bool(const CommandResult&)> note_change;

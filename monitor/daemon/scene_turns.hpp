@@ -45,7 +45,7 @@ class SceneTurns {
   // The message is done, or refused. It may be wanted again: see go_on_from().
   void end(std::uint64_t identity, bool may_be_wanted = false);
   // Another leader's cell is in force here, and these changes led to it. What was done here and is
-  // not among them is lost with the cell before, and is to be done.
+  // not among them was lost with the cell before, and has to be done again.
   void go_on_from(std::span<const DoneSceneChange> changes);
   // Both daemons have the scene to which the messages that are done have led.
   void forget_done();

@@ -23,8 +23,8 @@
 
 namespace clearance {
 
-// The lease of what has one leader, for cells with ticks of this period: two notices in a row would
-// have to be late.
+// How long a leader counts as leading after its last notice. With ticks of this period, two notices
+// in a row would have to be late.
 [[nodiscard]] constexpr std::int64_t leader_lease_ns(std::int64_t period_ns) noexcept {
   constexpr std::int64_t kLeast = 20'000'000;
   return std::max(kLeast, 2 * period_ns);
@@ -86,11 +86,12 @@ class PartnerPort {
   [[nodiscard]] bool leads() const;
   void published(const clearance_msg_Distances& report) { reports_.note_own(report); }
   void fill(clearance_msg_PartnerHealth& out);
-  // The partner has published in the last half of a second; it was heard once, and its reports do
-  // not agree with those of this daemon; its name, and the revision of its last report.
+  // The partner has published in the last half of a second.
   [[nodiscard]] bool hears_partner() { return reports_.hears_any(PartnerReports::kGoneAfterNs); }
+  // The partner was heard once, and its reports do not agree with those of this daemon.
   [[nodiscard]] bool disagrees() { return reports_.disagrees(); }
   [[nodiscard]] std::string partner() { return reports_.name(); }
+  // The revision of the partner's last report.
   [[nodiscard]] std::uint64_t partner_revision() const noexcept { return partner_revision_; }
 
  private:
@@ -124,7 +125,7 @@ class PartnerPort {
   std::int64_t leader_heard_ns_ = 0;
   std::int64_t passed_ns_ = 0;   // when the last pass of hear_notices() began, CLOCK_MONOTONIC
   std::int64_t went_on_ns_ = 0;  // when this process went on after a stop, CLOCK_REALTIME
-  bool is_delay_old_ = true;     // the next notice that did not wait begins a new one
+  bool is_delay_old_ = true;     // the next notice that did not wait begins a new least delay
   std::uint64_t offered_ = 0;    // the revision that take_cell() got last
   std::int64_t offered_ns_ = 0;
   std::int64_t asked_ns_ = 0, told_ns_ = 0, refusal_told_ns_ = 0;

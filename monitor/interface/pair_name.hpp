@@ -16,7 +16,7 @@ namespace clearance {
 
 // A part without a name of its own is called by its kind and place, "box0", and the parts of a mesh
 // have numbers, "mesh0.3" or "NAME.3" (name_of_part()). Such names mean nothing to a person.
-// Returns the name that was given, or nothing.
+// Returns the name that was given, or nothing. A given name of that form counts as none.
 [[nodiscard]] inline std::string_view given_name(std::string_view part) noexcept {
   constexpr std::array<std::string_view, 11> kKinds{
       "box",  "sphere",    "capsule",  "prism", "polyhedron",    "half_space",
