@@ -128,7 +128,10 @@ TEST_F(SharedCells, PartnersOfAShareLoseNoCycleWhenOneIsKilled) {
     EXPECT_TRUE(whole.is_whole()) << whole.what_is_missing();
     return whole->cycle > cycle + 200;
   })) << logs();
-  EXPECT_EQ(whole.missed(), missed);
+  // Late ticks lose cycles, too. Daemons tell of them once per second.
+  const auto ran_over = [this] { return logs().find("[overruns]") != std::string::npos; };
+  if (whole.missed() != missed) read_until(whole, ran_over, 2);
+  EXPECT_TRUE(whole.missed() == missed || ran_over()) << whole.missed() - missed << logs();
 }
 
 // The cell names one partner of each share, and the option the other one.
