@@ -92,7 +92,7 @@ std::optional<std::string> MotionSearch::fault(const Question& question) const {
     if (pairs.empty()) return why_no_pairs_between(scene_, of.a, of.b);
     const std::string named = "the margin of \"" + of.a + (of.b.empty() ? "" : "\" and \"" + of.b);
     if (is_left_out) return named + "\" is of pairs that the question leaves out";
-    // What is absent keeps each margin.
+    // Absent objects keep each margin.
     const auto is_there = [&](std::uint32_t pair) {
       return posture_.is_present(scene_.pairs[pair].first) &&
              posture_.is_present(scene_.pairs[pair].second);
@@ -123,7 +123,7 @@ std::optional<std::string> MotionSearch::fault(const Question& question) const {
          "\", is not watched with a link of a robot that the question moves or holds";
 }
 
-// Of other pairs, the question says nothing.
+// The question says nothing of other pairs.
 bool MotionSearch::is_asked_about(std::uint32_t first, std::uint32_t second) const noexcept {
   return (posture_.is_link(first) && posture_.is_of_question(first)) ||
          (posture_.is_link(second) && posture_.is_of_question(second));

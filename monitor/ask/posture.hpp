@@ -54,8 +54,9 @@ class Posture {
   [[nodiscard]] bool is_of_question(std::uint32_t object) const noexcept {
     return is_of_question_[object] != 0;
   }
-  // How old what places the object is at the first waypoint, s: its pose, or, of a link, the oldest
-  // of the positions that the question states for joints of its robot and of what carries that.
+  // The age of what places the object, at the first waypoint, s: its pose, or, of a link, the
+  // oldest of the positions that the question states for joints of its robot and of what carries
+  // that.
   [[nodiscard]] double age(std::uint32_t object) const noexcept;
   // True for the object of a sensor; content() is what it consists of in this question.
   [[nodiscard]] bool is_seen(std::uint32_t object) const noexcept {

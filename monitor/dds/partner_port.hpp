@@ -23,8 +23,8 @@
 
 namespace clearance {
 
-// How long a leader counts as leading after its last notice. With ticks of this period, two notices
-// in a row would have to be late.
+// A leader counts as leading for so long after its last notice. With ticks of this period, two
+// notices in a row would have to be late.
 [[nodiscard]] constexpr std::int64_t leader_lease_ns(std::int64_t period_ns) noexcept {
   constexpr std::int64_t kLeast = 20'000'000;
   return std::max(kLeast, 2 * period_ns);

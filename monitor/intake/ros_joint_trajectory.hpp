@@ -19,8 +19,8 @@ namespace clearance {
 // none. A stamp of 0, and one before the tick, means that the motion begins at once. A stamp that
 // is ahead by more than the age limit of its joints is refused, and a nearer one delays it.
 //
-// Where a robot of the scene names its joint states in a namespace of the topic, the names of
-// joints are that robot's, with or without its prefix, as those of its joint states are.
+// If a robot of the scene names its joint states in a namespace of the topic, the names of joints
+// are that robot's, with or without its prefix, as those of its joint states are.
 //
 // A controller moves from where the joints are to the first point, if that has a time above 0.
 // Their usable positions in `state` then become a waypoint at time 0, at rest. Refused is a joint

@@ -80,10 +80,12 @@ void MessageTranslator::move(const CollisionObject& message, const std::string& 
   if (message.shapes() > 0)
     result_.not_understood.push_back(fmt::format("shapes in a MOVE of '{}'", message.id));
   const Pose pose = value_of(checked_pose(message.pose, "pose"), path);
-  object->pose = compose(frame_of(message, path), pose);
-  if (object->is_moveits) set(object->entry, "pose", pose_node(object->pose, scene_.unit));
-  if (move_parts(message, *object, path)) return put(message.id, *object);
-  result_.changes.emplace_back(clearance::Place{message.id, object->pose});
+  KnownObject moved = *object;
+  moved.pose = compose(frame_of(message, path), pose);
+  if (moved.is_moveits) set(moved.entry, "pose", pose_node(moved.pose, scene_.unit));
+  if (move_parts(message, moved, path)) return put(message.id, std::move(moved));
+  result_.changes.emplace_back(clearance::Place{message.id, moved.pose});
+  *object = std::move(moved);
 }
 
 // MoveIt takes the poses of a message that has no shapes, too.
@@ -91,8 +93,8 @@ bool MessageTranslator::move_parts(const CollisionObject& message, KnownObject& 
                                    const std::string& path) const {
   std::vector<std::pair<std::string, Pose>> poses;
   const auto add = [&](const std::vector<Pose>& some, const char* field) {
-    for (const Pose& pose : some)
-      poses.emplace_back(fmt::format("{}[{}]", field, poses.size()), pose);
+    for (std::size_t i = 0; i < some.size(); ++i)
+      poses.emplace_back(fmt::format("{}[{}]", field, i), some[i]);
   };
   add(message.primitive_poses, "primitive_poses");
   add(message.mesh_poses, "mesh_poses");

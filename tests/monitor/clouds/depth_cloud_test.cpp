@@ -262,7 +262,7 @@ TEST(DepthCloud, SlabsContainTheDepthAndItsErrorAndNoMoreThanTwoFloats) {
   EXPECT_EQ(met + cloud.missing(), pixels.size());
 }
 
-// As REP 117 says. A LaserScan has the same rule.
+// REP 117 says so, and a LaserScan has the same rule.
 TEST(DepthCloud, MinusInfinityIsSomethingNearerThanTheRangeAndOtherNumbersOutsideAreMissing) {
   const PinholeCamera c = camera(8, 6);
   constexpr float kEndless = std::numeric_limits<float>::infinity();

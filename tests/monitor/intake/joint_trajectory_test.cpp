@@ -94,7 +94,7 @@ TEST_F(JointTrajectories, BeginAtRestWhereTheJointsAreOrAreRefused) {
   EXPECT_TRUE(is_refused(joints, {{1, {0.5, -3.2}}}, "'elbow'"));
 }
 
-// As joint states on a topic of a robot.
+// Joint states on a topic of a robot have the same rule.
 TEST_F(JointTrajectories, NameTheJointsOfTheRobotWhoseNamespaceTheirTopicHas) {
   const auto names_on = [&](const std::string& topic, const std::string& joint) {
     const auto result = made({joint}, {{0, {0}}, {1, {1}}}, topic);

@@ -54,8 +54,10 @@ TEST_F(MoveItCell, MoveTakesThePosesOfShapesToo) {
   send(moves);
   expect_at(object("shelf")->world_from_object, kPlace);
   expect_at(world(), compose(kPlace, kInObject));
+  moves.pose = Pose{};
   moves.primitive_poses.push_back(kInObject);
   EXPECT_EQ(refused(moves), "primitive_poses") << "one too many";
+  expect_at(object("shelf")->world_from_object, kPlace);
   moves.id = "table";
   moves.primitive_poses = {kInObject};
   EXPECT_EQ(refused(moves), "primitive_poses") << "of an object of the cell";

@@ -53,7 +53,7 @@ TEST_F(RecordingOptionsTest, EveryTenthReportKeepsItsPairsAndAllTicksCompareToTh
   EXPECT_EQ(400u, same.compared);
 }
 
-// What was left out cannot differ.
+// A topic that was left out cannot differ.
 TEST_F(RecordingOptionsTest, WithoutZonesTheReportsCompareToTheBit) {
   record({});
   ASSERT_GT(count(TopicKind::kZones), 0u);
