@@ -6,6 +6,7 @@
 #include "monitor/participant/participant.hpp"
 #include "monitor/wire/dds_sample.hpp"
 #include "tests/shared/loopback.hpp"
+#include "tests/shared/take_next.hpp"
 
 namespace clearance::test {
 
@@ -17,11 +18,7 @@ class RosReader {
       : reader_(participant.ros_reader(type, topic)) {}
   [[nodiscard]] dds_entity_t handle() const { return reader_; }
   // Takes the next message if there is one.
-  bool take() {
-    void* pointer = &*sample_;
-    dds_sample_info_t info;
-    return dds_take(reader_, &pointer, &info, 1, 1) == 1 && info.valid_data;
-  }
+  bool take() { return take_next(reader_, sample_); }
   // Waits for the next message. Returns null if none comes.
   const T* next() {
     return eventually([this] { return take(); }) ? &*sample_ : nullptr;

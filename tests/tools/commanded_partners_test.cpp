@@ -20,6 +20,7 @@
 #include "monitor/client/commands.hpp"
 #include "monitor/client/questions.hpp"
 #include "tests/shared/scratch_folder.hpp"
+#include "tests/shared/take_next.hpp"
 #include "tests/tools/commanding_client.hpp"
 #include "tests/tools/running_partners.hpp"
 
@@ -332,9 +333,7 @@ TEST_F(AskedPartners, AreNotAnsweredByADaemonWithTheOldCellThatWasStartedAgain) 
   std::set<std::uint64_t> leading;
   const auto look = [&] {
     Sample<clearance_msg_PartnerTick> tick;
-    void* pointer = &*tick;
-    dds_sample_info_t info;
-    while (dds_take(notices, &pointer, &info, 1, 1) > 0) leading.insert(tick->daemon);
+    while (test::take_next(notices, tick)) leading.insert(tick->daemon);
     return ended.load();
   };
   begin("right");

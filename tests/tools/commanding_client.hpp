@@ -11,6 +11,7 @@
 
 #include "monitor/participant/command_message.hpp"
 #include "tests/shared/loopback.hpp"
+#include "tests/shared/take_next.hpp"
 
 namespace clearance::test {
 
@@ -81,12 +82,7 @@ class CommandingClient {
 
  private:
   void take() {
-    for (;;) {
-      Sample<clearance_msg_CommandResult> message;
-      void* pointer = &*message;
-      dds_sample_info_t info{};
-      if (dds_take(reader_, &pointer, &info, 1, 1) != 1) return;
-      if (!info.valid_data) continue;
+    for (Sample<clearance_msg_CommandResult> message; take_next(reader_, message);) {
       const CommandResult result = from_wire(*message);
       if (result.client != name_) continue;
       last_[result.request] = result;

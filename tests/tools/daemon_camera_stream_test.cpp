@@ -18,6 +18,7 @@
 #include <vector>
 
 #include "tests/shared/ros_joints.hpp"
+#include "tests/shared/take_next.hpp"
 #include "tests/tools/camera_daemon.hpp"
 
 namespace clearance::test {
@@ -86,9 +87,7 @@ class CameraStream : public DaemonCameras {
     }
   };
   void take_health(Ticks& of) {
-    void* pointer = &*health;
-    dds_sample_info_t info{};
-    while (dds_take(health_reader, &pointer, &info, 1, 1) == 1) {
+    while (take_next(health_reader, health)) {
       of.wakeups.push_back(health->wakeup_second_max_us);
       of.ticks.push_back(health->tick_second_max_us);
       of.overruns += health->overruns - overruns.value_or(health->overruns);

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "monitor/publish/report_writer.hpp"
+#include "tests/shared/take_next.hpp"
 #include "tests/tools/running_cell.hpp"
 
 namespace clearance {
@@ -127,10 +128,7 @@ TEST(TwoDaemons, AnotherProgramOnTheTopicIsNamedAndCountedInHealth) {
   Sample<clearance_msg_Health> sample;
   EXPECT_TRUE(eventually([&] {
     dds_write(writer, &*foreign);
-    void* pointer = &*sample;
-    dds_sample_info_t info{};
-    return dds_take(health, &pointer, &info, 1, 1) == 1 && info.valid_data &&
-           sample->foreign_reports > 0;
+    return test::take_next(health, sample) && sample->foreign_reports > 0;
   })) << daemon.output();
   EXPECT_NE(sample->daemon, 0u);
   EXPECT_TRUE(daemon.told("other-program")) << daemon.output();

@@ -8,6 +8,7 @@
 
 #include "tests/shared/places.hpp"
 #include "tests/shared/scratch_folder.hpp"
+#include "tests/shared/take_next.hpp"
 #include "tests/tools/running_cell.hpp"
 
 namespace clearance::test {
@@ -63,9 +64,7 @@ class DaemonInputs : public testing::Test {
   }
   Report take() {
     auto sample = std::make_unique<Sample<clearance_msg_Distances>>();
-    void* pointer = &**sample;
-    dds_sample_info_t info{};
-    const bool came = dds_take(distances.reader(), &pointer, &info, 1, 1) == 1 && info.valid_data;
+    const bool came = take_next(distances.reader(), *sample);
     return came ? std::move(sample) : nullptr;
   }
 

@@ -14,6 +14,7 @@
 #include "tests/shared/poses.hpp"
 #include "tests/shared/ros_frames.hpp"
 #include "tests/shared/ros_joints.hpp"
+#include "tests/shared/take_next.hpp"
 #include "tests/tools/commanding_client.hpp"
 #include "tests/tools/watched_daemon.hpp"
 
@@ -195,9 +196,7 @@ TEST_F(DaemonMoveIt, PlanningSceneIsInForceAndComesBackAsTheMonitoredOne) {
   PlanningScene monitored;
   const auto comes_back = [&](std::size_t objects) {
     return step_until(5, inputs(), [&] {
-      void* pointer = &*sample;
-      dds_sample_info_t info{};
-      if (dds_take(reader, &pointer, &info, 1, 1) != 1 || !info.valid_data) return false;
+      if (!take_next(reader, sample)) return false;
       monitored = moveit::from_wire(*sample);
       return monitored.collision_objects.size() == objects;
     });

@@ -9,6 +9,7 @@
 #include "tests/monitor/replay/recorded_runs.hpp"
 #include "tests/shared/places.hpp"
 #include "tests/shared/scratch_folder.hpp"
+#include "tests/shared/take_next.hpp"
 #include "tests/tools/running_cell.hpp"
 
 namespace clearance::test {
@@ -55,10 +56,8 @@ class RecordingDaemon : public testing::Test {
   // messages.
   bool health_says(const std::string& what, std::uint64_t missing = 0) {
     Sample<clearance_msg_Health> sample;
-    void* pointer = &*sample;
-    dds_sample_info_t info{};
     return eventually([&] {
-      return dds_take(health, &pointer, &info, 1, 1) == 1 && info.valid_data &&
+      return take_next(health, sample) &&
              std::string(sample->recording).find(what) != std::string::npos &&
              sample->recording_missing >= missing;
     });

@@ -12,6 +12,7 @@
 
 #include "monitor/wire/moveit_types.hpp"
 #include "tests/shared/ros_joints.hpp"
+#include "tests/shared/take_next.hpp"
 #include "tests/tools/watched_daemon.hpp"
 
 namespace clearance::test::trajectories {
@@ -74,17 +75,14 @@ class DaemonTrajectories : public WatchedDaemon {
   void ask(const std::string& joint, int first, const std::vector<double>& positions,
            std::int64_t stamp_ns = 0) {
     Sample<diagnostic_msgs_msg_dds__DiagnosticArray_> message;
-    std_msgs_msg_dds__Float64_ value{};
+    Sample<std_msgs_msg_dds__Float64_> value;
     bool has_status = false, has_number = false;
     trajectories.send(joint, first, positions, stamp_ns);
     ASSERT_TRUE(step_until(
         kPeriodMs, [&] { send_joints(); },
         [&] {
-          dds_sample_info_t info{};
-          void* pointer = &*message;
-          has_status = has_status || dds_take(diagnostics, &pointer, &info, 1, 1) == 1;
-          pointer = &value;
-          has_number = has_number || dds_take(number, &pointer, &info, 1, 1) == 1;
+          has_status = has_status || take_next(diagnostics, message);
+          has_number = has_number || take_next(number, value);
           return has_status && has_number;
         }))
         << daemon->output();
@@ -96,7 +94,7 @@ class DaemonTrajectories : public WatchedDaemon {
     values.clear();
     for (std::uint32_t i = 0; i < status.values._length; ++i)
       values[status.values._buffer[i].key] = status.values._buffer[i].value;
-    lower = value.data;
+    lower = value->data;
   }
   void send_joints() {
     joints.send({"shoulder", "elbow", "push"}, {-1.0, 0.0, 0.0}, {0.0, 0.0, 0.0});

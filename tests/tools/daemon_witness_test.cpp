@@ -8,6 +8,7 @@
 #include <string>
 
 #include "tests/shared/ros_joints.hpp"
+#include "tests/shared/take_next.hpp"
 #include "tests/tools/camera_daemon.hpp"
 
 namespace clearance::test {
@@ -47,9 +48,7 @@ class DaemonWitness : public DaemonCameras {
       send_joints();
     };
     return step_until(5, step, [&] {
-      void* pointer = &*health;
-      dds_sample_info_t info{};
-      while (dds_take(reader, &pointer, &info, 1, 1) == 1) {
+      while (take_next(reader, health)) {
       }
       return health->witnesses._length > 0 && so(health->witnesses._buffer[0]);
     });

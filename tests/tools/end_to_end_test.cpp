@@ -11,6 +11,7 @@
 #include "tests/monitor/tick/scara_cell.hpp"
 #include "tests/monitor/tick/small_cells.hpp"
 #include "tests/shared/scratch_folder.hpp"
+#include "tests/shared/take_next.hpp"
 #include "tests/tools/running_cell.hpp"
 
 namespace clearance::test {
@@ -115,9 +116,7 @@ TEST(EndToEnd, RestampedJointStatesKeepTheirScheduleAndTheirVelocitiesFollowTheR
   int heard = 0;
   for (;; ++heard) {
     Sample<clearance_msg_JointStates> states;
-    void* pointer = &*states;
-    dds_sample_info_t info{};
-    if (dds_take(reader, &pointer, &info, 1, 1) != 1 || !info.valid_data) break;
+    if (!take_next(reader, states)) break;
     if (heard > 0) {
       EXPECT_LE(std::abs(states->stamp_ns - last_ns - 5 * kTick), 1);
     }

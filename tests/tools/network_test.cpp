@@ -23,6 +23,7 @@
 
 #include "monitor/files/reader.hpp"
 #include "monitor/wire/cdr.hpp"
+#include "tests/shared/take_next.hpp"
 #include "tests/tools/lossy_network.hpp"
 #include "tests/tools/running_cell.hpp"
 
@@ -302,10 +303,7 @@ bool hears_health_by_default(std::uint32_t domain) {
   const dds_entity_t reader = dds_create_reader(participant, of, qos, nullptr);
   dds_delete_qos(qos);
   Sample<clearance_msg_Health> health;
-  void* pointer = &*health;
-  dds_sample_info_t info{};
-  const bool came =
-      eventually([&] { return dds_take(reader, &pointer, &info, 1, 1) == 1 && info.valid_data; });
+  const bool came = eventually([&] { return test::take_next(reader, health); });
   dds_delete(participant);
   return came;
 }

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "monitor/participant/domain_configuration.hpp"
+#include "tests/shared/take_next.hpp"
 #include "tests/tools/lossy_network.hpp"
 #include "tests/tools/running_cell.hpp"
 
@@ -57,10 +58,7 @@ bool hears_health(const std::string& settings) {
   const dds_entity_t reader = dds_create_reader(participant, of, qos, nullptr);
   dds_delete_qos(qos);
   Sample<clearance_msg_Health> health;
-  void* pointer = &*health;
-  dds_sample_info_t info{};
-  const bool came =
-      eventually([&] { return dds_take(reader, &pointer, &info, 1, 1) == 1 && info.valid_data; });
+  const bool came = eventually([&] { return test::take_next(reader, health); });
   dds_delete(participant);
   dds_delete(joined);
   return came;

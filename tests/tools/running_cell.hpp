@@ -17,6 +17,7 @@
 #include "tests/shared/loopback.hpp"
 #include "tests/shared/places.hpp"
 #include "tests/shared/scratch_folder.hpp"
+#include "tests/shared/take_next.hpp"
 
 namespace clearance::test {
 
@@ -191,10 +192,7 @@ class Distances {
   // Returns the next report, or null if none arrives.
   std::unique_ptr<Sample<clearance_msg_Distances>> next() {
     auto sample = std::make_unique<Sample<clearance_msg_Distances>>();
-    void* pointer = &**sample;
-    dds_sample_info_t info{};
-    const bool came = eventually(
-        [&] { return dds_take(reader_, &pointer, &info, 1, 1) == 1 && info.valid_data; });
+    const bool came = eventually([&] { return take_next(reader_, *sample); });
     return came ? std::move(sample) : nullptr;
   }
 

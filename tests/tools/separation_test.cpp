@@ -11,6 +11,7 @@
 
 #include "tests/monitor/replay/recorded_runs.hpp"
 #include "tests/shared/scratch_folder.hpp"
+#include "tests/shared/take_next.hpp"
 #include "tests/tools/person_and_robot.hpp"
 #include "tests/tools/running_cell.hpp"
 
@@ -33,12 +34,7 @@ TEST(SeparationOverDds, ComesWithEveryTickAndIsUnknownWhenThePosesEnd) {
   ChildProcess daemon(kDaemon, with({cell.path(), "--record", run}, dds_arguments(dds)));
 
   Sample<clearance_msg_Separation> sample;
-  const auto next = [&] {
-    void* pointer = &*sample;
-    dds_sample_info_t info{};
-    return eventually(
-        [&] { return dds_take(reader, &pointer, &info, 1, 1) == 1 && info.valid_data; });
-  };
+  const auto next = [&] { return eventually([&] { return take_next(reader, sample); }); };
   const auto wait_for = [&](SeparationValidity validity, bool sending) {
     for (int i = 0; i < 2000; ++i) {
       if (sending && i % 10 == 0) poses.send(0.0);

@@ -9,6 +9,7 @@
 #include "monitor/interface/report.hpp"
 #include "tests/shared/places.hpp"
 #include "tests/shared/scratch_folder.hpp"
+#include "tests/shared/take_next.hpp"
 #include "tests/tools/running_cell.hpp"
 
 namespace clearance::test {
@@ -28,10 +29,8 @@ TEST(StopsOverDds, ComeWithEveryTickAndAreUnknownWithoutInputs) {
   // The first message whose stop is known, or is not.
   const auto comes = [&](bool known) {
     return eventually([&] {
-      void* pointer = &*sample;
-      dds_sample_info_t info{};
-      return dds_take(reader, &pointer, &info, 1, 1) == 1 && info.valid_data &&
-             sample->stops._length == 1 && (sample->stops._buffer[0].validity != 0) == known;
+      return take_next(reader, sample) && sample->stops._length == 1 &&
+             (sample->stops._buffer[0].validity != 0) == known;
     });
   };
   ASSERT_TRUE(comes(false)) << daemon.output();

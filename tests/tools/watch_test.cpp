@@ -6,6 +6,7 @@
 #include <csignal>
 #include <thread>
 
+#include "tests/shared/take_next.hpp"
 #include "tests/tools/running_cell.hpp"
 
 namespace clearance::test {
@@ -221,11 +222,7 @@ TEST(Robot, SendsEverythingThatMovesWithTwistsAndNumbersWithoutGaps) {
   Sample<clearance_msg_PoseBatch> sample;
   std::uint64_t expected = 0;
   for (int i = 0; i < 30; ++i) {
-    void* pointer = &*sample;
-    dds_sample_info_t info{};
-    ASSERT_TRUE(eventually([&] {
-      return dds_take(reader, &pointer, &info, 1, 1) == 1 && info.valid_data;
-    })) << robot.output();
+    ASSERT_TRUE(eventually([&] { return take_next(reader, sample); })) << robot.output();
     if (expected != 0) {
       EXPECT_EQ(sample->sequence_number, expected);
     }

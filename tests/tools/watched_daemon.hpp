@@ -10,6 +10,7 @@
 
 #include "tests/monitor/tick/scara_cell.hpp"
 #include "tests/shared/scratch_folder.hpp"
+#include "tests/shared/take_next.hpp"
 #include "tests/tools/running_cell.hpp"
 
 namespace clearance::test {
@@ -44,13 +45,12 @@ class WatchedDaemon : public testing::Test {
     return [this, code, names] { return daemon->told(code, names); };
   }
   void take() {
-    void* pointer = &*report;
-    dds_sample_info_t info{};
-    while (dds_take(distances->reader(), &pointer, &info, 1, 1) == 1) {
+    while (take_next(distances->reader(), report)) {
     }
   }
-  // The pair in the last report.
+  // The pair in the last report; nothing is known of it before the first one.
   const clearance_msg_PairDistance& pair(const std::string& link) const {
+    if (report->pairs._length == 0) return unknown_;
     std::uint32_t place = 0;  // index in the report, which contains only published pairs
     for (const ObjectPair& of : scene.pairs) {
       if (!of.publish) continue;
@@ -75,6 +75,15 @@ class WatchedDaemon : public testing::Test {
   std::optional<Distances> distances;
   Sample<clearance_msg_Distances> report;
   std::optional<ChildProcess> daemon;
+
+ private:
+  clearance_msg_PairDistance unknown_ = [] {
+    clearance_msg_PairDistance pair{};
+    pair.status = static_cast<std::uint8_t>(PairStatus::kUnknown);
+    pair.lower = -kInfinity;
+    pair.upper = kInfinity;
+    return pair;
+  }();
 };
 
 }  // namespace clearance::test

@@ -14,6 +14,7 @@
 #include "monitor/wire/report_checksum.hpp"
 #include "tests/shared/loopback.hpp"
 #include "tests/shared/sealed.hpp"
+#include "tests/shared/take_next.hpp"
 
 namespace clearance {
 namespace {
@@ -246,9 +247,7 @@ TEST(Client, KnowsNamesFromTheCatalogueHoweverLateItComes) {
 
 template <class T>
 bool take(dds_entity_t reader, Sample<T>& sample) {
-  void* pointer = &*sample;
-  dds_sample_info_t info;
-  return dds_take(reader, &pointer, &info, 1, 1) > 0 && info.valid_data;
+  return test::take_next(reader, sample);
 }
 
 // One of two partners ticks apart since it wrote that the zone is clear. A reader that comes now

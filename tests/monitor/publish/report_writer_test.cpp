@@ -11,6 +11,7 @@
 #include "tests/monitor/tick/small_cells.hpp"
 #include "tests/shared/loopback.hpp"
 #include "tests/shared/sealed.hpp"
+#include "tests/shared/take_next.hpp"
 
 namespace clearance {
 namespace {
@@ -38,10 +39,7 @@ class Reader {
   [[nodiscard]] dds_entity_t handle() const { return reader_; }
   // Returns the next sample, or null if none arrives.
   const T* next() {
-    void* pointer = &*sample_;
-    dds_sample_info_t info;
-    const bool came = test::eventually(
-        [&] { return dds_take(reader_, &pointer, &info, 1, 1) == 1 && info.valid_data; });
+    const bool came = test::eventually([&] { return test::take_next(reader_, sample_); });
     return came ? &*sample_ : nullptr;
   }
 

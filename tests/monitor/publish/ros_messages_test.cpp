@@ -7,6 +7,7 @@
 
 #include "tests/monitor/tick/small_cells.hpp"
 #include "tests/shared/loopback.hpp"
+#include "tests/shared/take_next.hpp"
 
 namespace clearance {
 namespace {
@@ -26,10 +27,7 @@ class RosMessagesTest : public testing::Test {
   }
   // Waits for the next list of zones.
   const ZoneStates* next(dds_entity_t zones) {
-    void* pointer = &*states;
-    dds_sample_info_t info;
-    const bool came =
-        eventually([&] { return dds_take(zones, &pointer, &info, 1, 1) == 1 && info.valid_data; });
+    const bool came = eventually([&] { return test::take_next(zones, states); });
     return came ? &*states : nullptr;
   }
   static clearance_msg_ZoneState state(std::uint32_t zone, const char* name, bool active) {
