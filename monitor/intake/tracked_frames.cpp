@@ -14,7 +14,7 @@ TrackedFrames::TrackedFrames(const Cell& cell, ByName by_name)
   }
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     const Object& object = scene.objects[i];
-    if (object.fixed || !object.is_read || links.contains(i)) continue;
+    if (object.fixed || !object.is_read || object.is_seen() || links.contains(i)) continue;
     const bool by_its_name = object.frame.empty() && by_name == ByName::kYes;
     const std::string& frame = by_its_name ? object.name : object.frame;
     if (frame.empty()) continue;

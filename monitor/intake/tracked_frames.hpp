@@ -20,7 +20,8 @@ namespace clearance {
 
 class TrackedFrames {
  public:
-  // kYes: moving objects that name no frame, and are not links, follow the frame of their own name.
+  // kYes: moving objects that name no frame follow the frame of their own name, except links and
+  // what a sensor sees.
   enum class ByName : std::uint8_t { kNo, kYes };
 
   // The cell must outlive this.

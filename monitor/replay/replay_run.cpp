@@ -40,6 +40,7 @@ ReplayRun::ReplayRun(SceneHistory& history, TickFeed& feed, const OfflineReplayO
       has_zones_(outline.has_zones),
       some_without_pairs_(outline.some_without_pairs),
       other_build_(other_build(outline.build)),
+      changes_left_out_(history.changes_left_out()),
       feed_(feed),
       loop_(history, moveit),
       moveit_(moveit),
@@ -294,6 +295,9 @@ void ReplayRun::note_counts() {
   const auto note_count = [this](std::uint64_t count, const std::string& what) {
     if (count > 0) note("{} {}", count, what);
   };
+  note_count(changes_left_out_,
+             "changes of the recorded cell were not followed: this is another cell, and its bodies "
+             "stay as it has them");
   note_count(loop_.of_other_scenes(), "batches were made for another scene and left out");
   note_count(
       not_comparable_,

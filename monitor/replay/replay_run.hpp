@@ -64,6 +64,7 @@ class ReplayRun {
   const OfflineReplayOptions& options_;
   bool has_reports_, has_zones_, some_without_pairs_;
   std::string other_build_;  // what to add where something differs
+  const std::size_t changes_left_out_;
   TickFeed& feed_;
   RecordedLoop loop_;
   const MoveItChanges* moveit_;

@@ -23,6 +23,13 @@ bool SceneHistory::has_changes() const noexcept {
   });
 }
 
+std::size_t SceneHistory::changes_left_out() const noexcept {
+  std::size_t count = 0;
+  for (std::size_t i = 1; i < of_others_.size(); ++i)
+    count += of_others_[i].revision != of_others_[i - 1].revision ? 1 : 0;
+  return count;
+}
+
 const DescribedScene* SceneHistory::next_change(std::uint64_t daemon, std::uint64_t joined,
                                                 std::uint64_t cycle) const {
   const DescribedScene* next = nullptr;

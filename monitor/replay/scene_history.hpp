@@ -1,6 +1,7 @@
 // The scenes that followed the first one of a recording, and when.
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <functional>
@@ -27,6 +28,9 @@ class SceneHistory {
   [[nodiscard]] const Cell& first() const noexcept { return first_; }
   // Whether the recording describes other scenes than the first one.
   [[nodiscard]] bool has_changes() const noexcept;
+
+  // The number of changes of the recorded cell that do not follow, as the first cell is another.
+  [[nodiscard]] std::size_t changes_left_out() const noexcept;
 
   // Whether the first cell had followed another one before the recording begins. Batches for one
   // that former() lacks cannot be told from others.

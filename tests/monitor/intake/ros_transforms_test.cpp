@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "monitor/intake/tracked_frames.hpp"
 #include "tests/monitor/intake/heard.hpp"
 #include "tests/monitor/tick/scara_cell.hpp"
 
@@ -315,6 +316,21 @@ TEST_F(RosTransformsToAWorld, EndThereAndOthersAreNotUsed) {
   EXPECT_EQ(batch.samples[0].object, 0u);
   EXPECT_EQ(batch.samples[0].world_from_object.position, Vec3(1, 0, 0));
   EXPECT_EQ(batch.samples[0].stamp_ns, now()) << "stamps: sent";
+}
+
+// A recording has frames of that name for what carries the sensor, not for what it sees.
+TEST(RosTransformsOfALog, MoveObjectsOfTheirNamesButNotWhatASensorSees) {
+  const ScratchFolder folder;
+  const Cell cell = read_good(
+      "name: test\nunits: {length: m, angle: rad}\n"
+      "objects: [{name: tool, sphere: {radius: 0.1}}]\n"
+      "sensors: [{name: eye, points: /points, most_points: 10, depth_error: {constant: 0.01}, "
+      "range: [0.3, 4], mount: {pose: {xyz: [0, 0, 0]}}}]\n"
+      "pairs: [{between: [tool, eye]}]\n",
+      folder / "cell.yaml");
+  const TrackedFrames tracked(cell, TrackedFrames::ByName::kYes);
+  ASSERT_EQ(tracked.followers().size(), 1u);
+  EXPECT_EQ(tracked.followers()[0].name, "tool");
 }
 
 // A robot with a known base pose defines the frames of its links. Transforms below a link start

@@ -43,6 +43,15 @@ TEST_F(ChangingRun, ReplaysWithoutTheFilesOfItsCells) {
   EXPECT_EQ(replay.compared, static_cast<std::uint64_t>(kTicks));
 }
 
+TEST_F(ChangingRun, TellsHowManyChangesAnotherCellDoesNotFollow) {
+  record();
+  Cell other = cells.front();
+  other.scene.revision = 99;
+  const OfflineReplay replay = replay_offline(other, run);
+  EXPECT_TRUE(replay.ok()) << replay.text();
+  EXPECT_THAT(replay.notes, Contains(HasSubstr("3 changes of the recorded cell")));
+}
+
 // The same path had another content in each cell, and each one is kept.
 TEST_F(ChangingRun, KeepsTheCellOfEveryChange) {
   record();
