@@ -15,7 +15,7 @@ namespace {
 constexpr double kBetweenRobots = 0.6;
 constexpr double kTableTop = 0.75, kTableThickness = 0.05;
 constexpr double kTableBack = -0.4, kTableFront = 0.8, kTableBeside = 0.5;
-constexpr double kAboveTable = 0.05;  // the lowest moving link, where the zone `stop` is clear
+constexpr double kAboveGround = 0.05;  // the lowest moving link, where the zone `stop` is clear
 constexpr double kMachineAway = 0.2, kPersonAway = 2.0;  // beyond reach; behind the back
 constexpr double kCameraBeside = 2.0, kCameraHigh = 2.2;
 
@@ -39,6 +39,7 @@ class StarterWriter {
   void write_table();
   void write_machine();
   void write_person();
+  void write_floor();
   void write_camera();
   void write_robot(std::size_t robot);
   void write_joints(const StarterRobot& robot);
@@ -52,10 +53,18 @@ class StarterWriter {
     fmt::format_to(std::back_inserter(text_), format, std::forward<Values>(values)...);
     text_ += '\n';
   }
-  [[nodiscard]] bool has_surroundings() const { return options_.table || options_.machine; }
-  // By how much the robot stands above the table's top.
+  // A camera needs a floor.
+  [[nodiscard]] bool has_surroundings() const {
+    return options_.table || options_.machine || options_.camera;
+  }
+  // The body on which robots stand; empty: none is written.
+  [[nodiscard]] std::string ground() const {
+    return options_.table ? "table" : options_.camera ? "floor" : "";
+  }
+  // By how much the robot stands above it.
   [[nodiscard]] double raised(const StarterRobot& robot) const {
-    return options_.table ? std::ceil(1e3 * std::max(0.0, kAboveTable - robot.lowest)) / 1e3 : 0.0;
+    return ground().empty() ? 0.0
+                            : std::ceil(1e3 * std::max(0.0, kAboveGround - robot.lowest)) / 1e3;
   }
 
   const StarterOptions& options_;
@@ -149,6 +158,15 @@ void StarterWriter::write_person() {
   line("    margin: 0.05                      # m: error of the tracker");
 }
 
+// A picture in which too little is known shows no clear place.
+void StarterWriter::write_floor() {
+  line("  # The camera sees it where nothing else stands. Measure its height.");
+  line("  - name: floor");
+  line("    groups: [surroundings]");
+  line("    fixed: true");
+  line("    half_space: {{normal: [0, 0, 1], offset: 0}}  # m: its height");
+}
+
 // Stands beside the robots, and looks at the middle between them, above the table.
 void StarterWriter::write_camera() {
   const Vec3 at(0.0, y_.back() + kCameraBeside, kCameraHigh);
@@ -213,10 +231,11 @@ void StarterWriter::write_robot(std::size_t number) {
   const double up = raised(robot);
   line("    base: {{{}pose: {{xyz: [0, {}, {}], rpy: [0, 0, 0]}}}}  # m, rad: measure it",
        options_.table ? "on: table, " : "", mm(y_[number]),
-       mm(options_.table ? 0.5 * kTableThickness + up : 0.0));
+       mm(up + (options_.table ? 0.5 * kTableThickness : 0.0)));
   if (up > 0.0) {
-    line("    # It stands {} m above the top: at zero, '{}' reaches {} m {} the base.", mm(up),
-         robot.lowest_link, mm(std::abs(robot.lowest)), robot.lowest < 0.0 ? "below" : "above");
+    line("    # It stands {} m above the {}: at zero, '{}' reaches {} m {} the base.", mm(up),
+         ground(), robot.lowest_link, mm(std::abs(robot.lowest)),
+         robot.lowest < 0.0 ? "below" : "above");
   }
   line("    margin: 0.005                     # m: calibration, sag, cables; zones subtract it");
   if (!robot.variables.empty()) write_joints(robot);
@@ -245,9 +264,9 @@ void StarterWriter::write_exceptions() {
     entries += fmt::format("  - {{between: [{}, {}], reason: {}}}\n", quoted(a), quoted(b), why);
   };
   for (const StarterRobot& robot : options_.robots) {
-    if (options_.table) {
+    if (!ground().empty()) {
       for (const std::string& link : robot.turning)
-        allow(robot.prefix + link, "table", "turns above its base");
+        allow(robot.prefix + link, ground(), "turns above its base");
     }
     for (const auto& [a, b] : robot.touching) {
       allow(robot.prefix + a, robot.prefix + b,
@@ -286,8 +305,7 @@ void StarterWriter::write_people(const std::string& robot) {
 }
 
 void StarterWriter::write_zones() {
-  if (options_.robots.size() == 1 && !has_surroundings() && !options_.person && !options_.camera)
-    return;
+  if (options_.robots.size() == 1 && !has_surroundings() && !options_.person) return;
   line(
       "# Distances less margins. tools/TUTORIAL.md has the rules for thresholds by speed and "
       "brake.");
@@ -308,6 +326,7 @@ std::string StarterWriter::write() {
   if (options_.table) write_table();
   if (options_.machine) write_machine();
   if (options_.person) write_person();
+  if (options_.camera) write_floor();
   line("robots:");
   for (std::size_t i = 0; i < options_.robots.size(); ++i) write_robot(i);
   if (options_.camera) write_camera();

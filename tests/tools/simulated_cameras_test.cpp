@@ -14,6 +14,7 @@
 
 #include "monitor/wire/camera_types.hpp"
 #include "monitor/wire/ros_types.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
 #include "tests/shared/ros_reader.hpp"
 #include "tests/tools/running_cell.hpp"
 #include "tools/rendering/person.hpp"
@@ -199,6 +200,23 @@ TEST_F(SimulatedCamerasTest, AreLeftOutWhereTheCellDoesNotStateTheirPlace) {
   EXPECT_EQ(robot->wait(), 2);
   start(kBoxBelow, {"--person", "1,0"});
   EXPECT_EQ(robot->wait(), 2);
+}
+
+// The zones of such a cell are left once the picture shows enough that is known.
+TEST_F(SimulatedCamerasTest, AreUsedInCellsToStartFrom) {
+  const ScratchFolder folder;
+  write_text(folder / "arm.urdf", kScaraUrdf);
+  const std::string file = folder / "cell.yaml";
+  for (const char* bodies : {"camera", "table,person,camera"}) {
+    ChildProcess made(
+        kScene, {"new", "--robots", folder / "arm.urdf", "--on", bodies, "-o", file, "--force"});
+    ASSERT_EQ(made.wait(), 0) << made.output();
+    robot.emplace(kRobot, with({file, "--swing", "0.1"}, dds_arguments(dds)));
+    ChildProcess daemon(kDaemon, with({file}, dds_arguments(dds)));
+    const auto is_left = [&] { return daemon.told("zone-left", {" - camera'"}); };
+    EXPECT_TRUE(eventually(is_left)) << bodies << ": " << daemon.output();
+    end();
+  }
 }
 
 void SimulatedCamerasTest::judge(const std::string& file) {
