@@ -172,6 +172,12 @@ void RobotReader::allow(const RobotKeys& keys, const RobotDescription& descripti
     objects[name] = link.object;
   }
   note_visuals(description.robot, robot.notes);
+  if (description.srdf && !description.srdf->moving_base.empty() && keys.base_node == nullptr) {
+    robot.notes.push_back(
+        fmt::format("the base stands still, though the SRDF lets it move ({}): if it does, state "
+                    "base: {{frame: NAME}}, or pose if it does not",
+                    description.srdf->moving_base));
+  }
   std::vector<std::string> expected;  // not shown: a person has no SRDF
   std::vector<std::string>& notes = keys.person_node != nullptr ? expected : robot.notes;
   const std::vector<SrdfDisabled> pairs =

@@ -196,6 +196,13 @@ std::variant<Srdf, UrdfFaults> read_srdf(const std::filesystem::path& file) {
     srdf.enabled = read_pairs_of(xml, "enable_collisions");
     for (const XMLElement* at : xml.children(*xml.root(), "disable_default_collisions"))
       srdf.disabled_by_default.push_back({xml.attribute(*at, "link"), xml.place_of(*at)});
+    for (const XMLElement* at : xml.children(*xml.root(), "virtual_joint")) {
+      const char* const type = xml.optional(*at, "type");
+      const char* const frame = xml.optional(*at, "parent_frame");
+      const std::string_view kind = type == nullptr ? "" : type;
+      if (kind == "planar" || kind == "floating")
+        srdf.moving_base = fmt::format("{} in frame '{}'", kind, frame == nullptr ? "" : frame);
+    }
   }
   return value_or_faults(std::move(srdf), xml, srdf_format());
 }

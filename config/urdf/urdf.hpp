@@ -113,6 +113,8 @@ struct Srdf {
   UrdfPlace place = {};  // of the name
   std::vector<SrdfDisabled> disabled = {}, enabled = {};
   std::vector<SrdfDefault> disabled_by_default = {};
+  // The virtual joint by which the base moves: "planar in frame 'odom'". Empty: there is none.
+  std::string moving_base = {};
   std::vector<std::string> notes = {};
 };
 

@@ -21,13 +21,13 @@ struct NoInterior {
 // The space that the normals span.
 struct NormalSpan {
   int rank;  // 1 to 3
-  Integer3
-      direction;  // rank 1: the normals' own; rank 2: the one perpendicular to all; rank 3: none
+  // Rank 1: the normals' own; rank 2: the one perpendicular to all; rank 3: none.
+  Integer3 direction;
 };
 [[nodiscard]] NormalSpan normal_span(std::span<const HalfSpace> rows);
 
 // A homogeneous point strictly inside every row; or the proof that there is none. Rows: finite, no
-// zero normal. Its depth is about the largest possible, up to the size of the rows' offsets.
+// zero normal. It lies about as deep inside as any point, but no deeper than the offsets are large.
 [[nodiscard]] std::variant<Integer4, NoInterior> interior_point(std::span<const HalfSpace> rows);
 
 }  // namespace clearance::exact

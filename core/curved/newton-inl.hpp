@@ -30,7 +30,8 @@ inline constexpr double kLongStep = 0x1p-10;
 // If bodies nearly touch, the next step after one this short is rounding. The limit is for the
 // square of the step.
 inline constexpr double kFinalStep = 0x1p-52;
-// Bodies that overlap along the best direction by this many tolerances overlap.
+// An overlap along the best direction by more tolerances than this is certain, whatever rounding
+// does.
 inline constexpr double kOverlap = 0x1p20;
 inline constexpr double kNearAxisSquare = kNearAxis * kNearAxis;
 

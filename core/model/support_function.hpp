@@ -10,8 +10,8 @@
 namespace clearance {
 
 struct Support {
-  double value =
-      0.0;  // max over the anchors of m.x as computed, off by at most 3 roundings of |m||x|
+  // The maximum over the anchors of m.x as computed, off by at most 3 roundings of |m||x|.
+  double value = 0.0;
   std::int32_t anchor = 0;  // the anchor at which it is attained
 };
 

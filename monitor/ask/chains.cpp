@@ -13,22 +13,6 @@ namespace {
 
 constexpr double kChainRounding = 0x1p-44;  // of sums over a chain, relative
 
-double largest_slide(const RobotJoint& joint, const Scene& scene) noexcept {
-  switch (joint.type) {
-    case JointType::kPrismatic: {
-      const JointVariable& variable = scene.variables[joint.variable];
-      const double limit = std::max(std::abs(variable.lower), std::abs(variable.upper));
-      const double size = std::isfinite(limit) ? limit + variable.limit_tolerance : kLargestLength;
-      return std::abs(joint.multiplier) * size + std::abs(joint.offset);
-    }
-    case JointType::kPlanar:
-    case JointType::kFloating:
-      return 3.0 * kLargestLength;
-    default:
-      return 0.0;
-  }
-}
-
 }  // namespace
 
 Chains::Chains(const Scene& scene, std::span<const double> radii)
@@ -45,7 +29,7 @@ Chains::Chains(const Scene& scene, std::span<const double> radii)
         node.joint = &robot.joints[i - 1];
         node.parent = first[r] + node.joint->parent;
         node.place_in_parent = node.joint->parent_from_joint.position;
-        node.largest_slide = largest_slide(*node.joint, scene);
+        node.largest_slide = largest_slide(*node.joint, scene.variables);
       } else {
         if (robot.base.kind == RobotBase::Kind::kLink) {
           node.parent = first[robot.base.robot] + robot.base.link;

@@ -8,8 +8,8 @@
 
 namespace clearance {
 
-// Returns its length if the tick would not know where the joint is: it is not 1 to within
-// kSampleUnitTolerance. Returns 1 otherwise, and of a joint of any other type.
+// Returns 1 if the quaternion has length 1 to within kSampleUnitTolerance, and for a joint of any
+// other type. Otherwise it returns the length, and a tick would not know where the joint is.
 // `position_of(variable)` may be any number.
 template <class PositionOf>
 [[nodiscard]] double wrong_length(const RobotJoint& joint, const PositionOf& position_of) {

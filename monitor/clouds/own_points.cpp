@@ -11,6 +11,8 @@ namespace {
 
 // A bound of the errors in lengths that are computed here, relative to them.
 constexpr double kRoundedUp = 1.0 + 0x1p-40;
+// Sizes are those of float32: one that is as large as the limit is not larger.
+constexpr double kLarger = 1.0 + 0x1p-20;
 
 // The pose of a body whose origin is at a point of the cloud's frame.
 RelativePose moved_to(const Vec3& p, const RelativePose& pose) noexcept {
@@ -35,8 +37,8 @@ void sample(const ConvexBody& part, const ConvexBody& point, const RelativePose&
 class SlabShelf {
  public:
   SlabShelf(const ConvexBody& part, const RelativePose& pose, double shell, DepthCloud& cloud,
-            SlabBody& body, double depth) noexcept
-      : part_(part), pose_(pose), shell_(shell), cloud_(cloud), body_(body), depth_(depth) {}
+            SlabBody& body, const CentreLimit& limit) noexcept
+      : part_(part), pose_(pose), shell_(shell), cloud_(cloud), body_(body), limit_(limit) {}
 
   BlindShell run() noexcept {
     if (cloud_.levels() > 0) descend(cloud_.levels() - 1, 0);
@@ -84,12 +86,14 @@ class SlabShelf {
       const DepthCloud::Slab slab = cloud_.pixel_slab(b, lane);
       if (!has_near_middle(slab) && !is_near(slab)) continue;
       sample(part_, body_.origin(), moved_to(slab.middle(), pose_), slab.diameter(),
-             depth_ + shell_, blind_);
+             limit_.depth + shell_, blind_);
       cloud_.remove(b, lane);
       ++blind_.elements;
       blind_.shell = shell_;
-      blind_.add(slab.middle(), slab.diameter());
-      blind_.thickness = std::max(blind_.thickness, shell_ + slab.diameter());
+      const double size = slab.diameter();
+      blind_.all.add(slab.middle(), size);
+      if (size > kLarger * limit_.large) blind_.large.add(slab.middle(), size);
+      blind_.thickness = std::max(blind_.thickness, shell_ + size);
     }
   }
 
@@ -98,7 +102,7 @@ class SlabShelf {
   double shell_;
   DepthCloud& cloud_;
   SlabBody& body_;
-  double depth_;
+  const CentreLimit& limit_;
   TrackingState features_, point_features_;
   // Half-spaces n.x <= offset of the cloud's frame that contain the part, but for rounding.
   struct Plane {
@@ -174,7 +178,10 @@ class BallShelf {
       sample(part_, cloud_.origin(), moved_to(p, pose_), radius, limit_.depth + shell_, blind_);
       blind_.elements += cloud_.remove(b, lane) ? 1 : 0;
       blind_.shell = shell_;
-      blind_.add(p, radius);
+      // A cube lies along the axes of the box.
+      const double half = is_cube ? block.radius[lane] * kRoundedUp : radius;
+      blind_.all.add(p, half);
+      if (2.0 * (is_cube ? half : near) > kLarger * limit_.large) blind_.large.add(p, half);
       // A surface between the point and a neighbour that stays may be hidden up to that neighbour.
       blind_.thickness = std::max(blind_.thickness, shell_ + 2.0 * radius);
     }
@@ -194,7 +201,7 @@ class BallShelf {
 BlindShell shelve_own_points(const ConvexBody& part, const RelativePose& part_from_cloud,
                              double shell, DepthCloud& cloud, SlabBody& body,
                              const CentreLimit& limit) noexcept {
-  return SlabShelf(part, part_from_cloud, shell, cloud, body, limit.depth).run();
+  return SlabShelf(part, part_from_cloud, shell, cloud, body, limit).run();
 }
 
 BlindShell shelve_own_points(const ConvexBody& part, const RelativePose& part_from_cloud,

@@ -13,6 +13,22 @@
 
 namespace clearance {
 
+// A box along the axes of a cloud's frame, m; low > high: it is empty.
+struct CloudBox {
+  Vec3 low = Vec3::Constant(kInfinity), high = Vec3::Constant(-kInfinity);
+
+  [[nodiscard]] bool is_empty() const noexcept { return !(low.x() <= high.x()); }
+  // Adds what is within the radius of a point.
+  void add(const Vec3& point, double radius) noexcept {
+    low = low.cwiseMin((point.array() - radius).matrix());
+    high = high.cwiseMax((point.array() + radius).matrix());
+  }
+  void add(const CloudBox& other) noexcept {
+    low = low.cwiseMin(other.low);
+    high = high.cwiseMax(other.high);
+  }
+};
+
 // The shell that shelving has made blind. Anything within `thickness` of the part may be hidden: a
 // hand there is shelved with the part.
 struct BlindShell {
@@ -22,22 +38,18 @@ struct BlindShell {
   // The elements for which samples stand, and those of them for which the sample is deep: the
   // sensor has seen through the part's surface there (CentreLimit::depth).
   std::size_t sampled = 0, deep = 0;
-  // A box of the cloud's frame that contains the shelved elements, m; low > high: none were.
-  Vec3 low = Vec3::Constant(kInfinity), high = Vec3::Constant(-kInfinity);
+  // Boxes of the cloud's frame that contain the shelved elements, and the large ones of them
+  // (CentreLimit::large).
+  CloudBox all, large;
 
-  // Adds what is within the radius of a point.
-  void add(const Vec3& point, double radius) noexcept {
-    low = low.cwiseMin((point.array() - radius).matrix());
-    high = high.cwiseMax((point.array() + radius).matrix());
-  }
   void add(const BlindShell& other) noexcept {
     elements += other.elements;
     thickness = std::max(thickness, other.thickness);
     shell = std::max(shell, other.shell);
     sampled += other.sampled;
     deep += other.deep;
-    low = low.cwiseMin(other.low);
-    high = high.cwiseMax(other.high);
+    all.add(other.all);
+    large.add(other.large);
   }
 };
 
@@ -47,6 +59,9 @@ struct CentreLimit {
   double most = kInfinity;  // m, >= the shell: the points of the part itself are within this of it
   DepthError error;
   bool along_ray = false;  // depth is the distance from the sensor, not z
+  // An element of which more than this is measured, m, is large: a part that it touches is only
+  // some of what it may show.
+  double large = kInfinity;
   // An element is deep if all of it lies deeper in the part than this and the shell, m. NaN: no
   // element is sampled.
   double depth = std::numeric_limits<double>::quiet_NaN();

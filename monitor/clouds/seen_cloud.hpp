@@ -55,9 +55,9 @@ class SeenCloud {
   void note_known(bool shows_known) noexcept { shows_known_ = shows_known; }
 
   // `body` is scratch memory of the caller. Without elements, the answer is kEmpty, and only crop
-  // and thick shells bound `lower`. Elements that were cropped count: `lower` is a bound of
-  // their distance, too. So do those that were left out in a shell which is thicker than trusted,
-  // unless that is the shell of `object`.
+  // and shells bound `lower`. Elements that were cropped count: `lower` is a bound of their
+  // distance, too. So do those that were left out in a shell which is thicker than trusted, and the
+  // large ones of any shell, unless that is the shell of `object`.
   [[nodiscard]] NearestElement nearest(const ConvexBody& part, const RelativePose& part_from_cloud,
                                        SlabBody& body, CloudTracking& tracking,
                                        std::uint32_t most_overlap_work = kMostOverlapWork,
@@ -70,8 +70,10 @@ class SeenCloud {
     if (crop_.radius < kInfinity)
       found.lower = std::min(found.lower, to_cropped(part, part_from_cloud));
     for (const HiddenNear& near : hidden_) {
-      if (near.shell.elements > 0 && near.shell.shell > trusted_shell_ && near.object != object)
-        found.lower = std::min(found.lower, to_hidden(near.shell, part, part_from_cloud));
+      const bool is_trusted = near.shell.shell <= trusted_shell_;
+      const CloudBox& counts = is_trusted ? near.shell.large : near.shell.all;
+      if (!counts.is_empty() && near.object != object)
+        found.lower = std::min(found.lower, to_box(counts, part, part_from_cloud));
     }
     found.upper += excess() * (1.0 + 0x1p-40);
     return found;
@@ -153,10 +155,10 @@ class SeenCloud {
   }
 
   // No point of the box is nearer to the part than this, m.
-  [[nodiscard]] static double to_hidden(const BlindShell& shell, const ConvexBody& part,
-                                        const RelativePose& part_from_cloud) noexcept {
+  [[nodiscard]] static double to_box(const CloudBox& box, const ConvexBody& part,
+                                     const RelativePose& part_from_cloud) noexcept {
     const Vec3 origin = -(part_from_cloud.rotation.transpose() * part_from_cloud.translation);
-    const Vec3 nearest = origin.cwiseMax(shell.low).cwiseMin(shell.high);
+    const Vec3 nearest = origin.cwiseMax(box.low).cwiseMin(box.high);
     const double lengths = origin.norm() + nearest.norm() + part.bounding_radius + part.radius;
     const double error = part_from_cloud.translation_error +
                          part_from_cloud.rotation_error * origin.norm() + 0x1p-46 * lengths;

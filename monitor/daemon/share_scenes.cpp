@@ -8,6 +8,7 @@
 
 #include "config/cell/share_topics.hpp"
 #include "monitor/app/log_line.hpp"
+#include "monitor/intake/tracked_persons.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/realtime.hpp"
 
@@ -18,6 +19,8 @@ constexpr std::int64_t kPollNs = 10'000'000;
 constexpr std::int64_t kAgainNs = 1'000'000'000;
 // The first share waits so long before it takes a scene: it may come to have the same one itself.
 constexpr std::int64_t kFirstWaitsNs = 200'000'000;
+// The lists of bodies have no effect here for so long before people are unknown, beside the lease.
+constexpr std::int64_t kAloneNs = 1'000'000'000;
 constexpr std::int64_t kMeetingNs = 1'000'000'000, kMeetingAtMostNs = 3'000'000'000;
 
 std::vector<std::string> names_of(const Shares& shares) {
@@ -72,8 +75,10 @@ std::optional<std::size_t> SceneToFollow::find(std::uint64_t in_force, bool has_
 ShareScenes::ShareScenes(const Cell& cell, Participant& participant, Actions actions)
     : own_(*cell.shares.own),
       names_(names_of(cell.shares)),
+      follows_bodies_(!cell.ros.moveit.tracked_bodies.empty()),
       actions_(std::move(actions)),
-      to_follow_(own_, names_.size(), SystemClock().monotonic_ns()) {
+      first_alive_ns_(SystemClock().monotonic_ns()),
+      to_follow_(own_, names_.size(), first_alive_ns_) {
   std::vector<dds_entity_t> readers;
   for (std::size_t share = 0; share < names_.size(); ++share) {
     if ((share == 0) == (own_ == 0)) continue;
@@ -108,6 +113,7 @@ void ShareScenes::run() {
   while (!stop_) {
     wait_->wait(kPollNs);
     hear();
+    look_for_first(clock.monotonic_ns());
     const std::uint64_t in_force = actions_.revision();
     const auto share = to_follow_.find(in_force, has_changed_, clock.monotonic_ns());
     if (share) take_over(*std::ranges::find(heard_, *share, &Heard::share));
@@ -120,15 +126,46 @@ void ShareScenes::hear() {
   for (Heard& heard : heard_) {
     while (heard.reader.take(*taken_)) {
       std::swap(*heard.last, *taken_);
-      to_follow_.hear(heard.share, {.daemon = heard.last->daemon,
-                                    .revision = heard.last->scene_revision,
-                                    .has_changed = heard.last->in_force_from != 0});
+      note_told(heard);
     }
     const client::RefusedMessages& refused = heard.reader.refused();
     if (refused.count < heard.next_told) continue;
     heard.next_told = 2 * refused.count;
     log_line(lines::kShareCatalogueRefused, names_[heard.share], client::text_of({refused}));
   }
+}
+
+// Only the first share applies the lists of bodies. What it said last means nothing without it.
+void ShareScenes::look_for_first(std::int64_t now_ns) {
+  if (is_first() || !follows_bodies_) return;
+  const Heard& first = heard_.front();
+  if (writers_alive(first.reader.entity()) > 0) {
+    first_alive_ns_ = now_ns;
+    if (is_alone_.exchange(false)) note_told(first);
+    return;
+  }
+  if (now_ns - first_alive_ns_ < kAloneNs) return;
+  to_follow_.hear(first.share, {});
+  if (!is_alone_.exchange(true)) {
+    log_line(lines::kShareAlone, names_[first.share]);
+  } else if (now_ns - unknown_ns_ < kAgainNs) {
+    return;
+  }
+  unknown_ns_ = now_ns;
+  MadeCommand made{.sender = "shares"};
+  made.make = [this](const Cell& cell, const AskPose&) {
+    return is_alone_ && actions_.changes()
+               ? Command{.changes = changes_by_bodies(std::nullopt, cell.scene)}
+               : Command{};
+  };
+  made.answer = [](const CommandResult&) {};
+  static_cast<void>(actions_.put(std::move(made)));
+}
+
+void ShareScenes::note_told(const Heard& heard) {
+  to_follow_.hear(heard.share, {.daemon = heard.last->daemon,
+                                .revision = heard.last->scene_revision,
+                                .has_changed = heard.last->in_force_from != 0});
 }
 
 // One command waits at a time. It takes over the scene that was heard last.

@@ -1,6 +1,7 @@
 // One scene for a cell in shares that takes MoveIt's messages: the daemon of the first share
 // applies the messages, and those of all others take over its scene. So all make the same changes
-// in the same order, whatever messages each of them got, and when.
+// in the same order, whatever messages each of them got, and when. Without a daemon of the first
+// share no lists of bodies are applied, and all persons are unknown.
 #pragma once
 
 #include <atomic>
@@ -106,12 +107,17 @@ class ShareScenes {
   };
   void run();
   void hear();
+  void look_for_first(std::int64_t now_ns);
+  void note_told(const Heard& heard);
   void take_over(const Heard& heard);
   [[nodiscard]] MadeCommand command();
 
   const std::uint32_t own_;
   const std::vector<std::string> names_;
+  const bool follows_bodies_;
   const Actions actions_;
+  std::int64_t first_alive_ns_, unknown_ns_ = 0;  // CLOCK_MONOTONIC
+  std::atomic<bool> is_alone_{false};             // no daemon of the first share has been there
   std::vector<Heard> heard_;
   Sample<clearance_msg_Catalogue> taken_;
   SceneToFollow to_follow_;

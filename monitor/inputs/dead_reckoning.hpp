@@ -1,5 +1,5 @@
-// Detects values that are not where the rates lead which were sent with them: frozen values, values
-// that lag behind, and wrong rates. The `Metric` is that of plausibility.hpp.
+// Detects values that contradict the rates sent with them: frozen values, values that lag behind,
+// and wrong rates. The `Metric` is that of plausibility.hpp.
 #pragma once
 
 #include <algorithm>
@@ -22,9 +22,9 @@ enum class Agreement : std::uint8_t {
 // Dead reckoning: integrates the sent rates from an older value.
 //
 // A rate may have a timing error of the age limit and a relative error of one sixth. Over the whole
-// integration time, noise of up to a thirtieth of the usual speed accumulates to little. The same
-// holds for an offset of up to a fiftieth. Samples without a rate are left out. Nothing is checked
-// if rates come less often than every two age limits.
+// integration time, noise of up to a thirtieth of the usual speed accumulates to little, and so
+// does an offset of up to a fiftieth of that speed. Samples without a rate are left out. Nothing is
+// checked if rates come less often than every two age limits.
 template <class Metric>
 class Reckoning {
  public:

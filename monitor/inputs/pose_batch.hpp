@@ -75,9 +75,9 @@ struct PoseBatch {
   std::vector<PoseSample> samples;
   std::vector<JointSample> joints = {};
   std::int64_t came_ns = 0;   // when it was handed over, CLOCK_MONOTONIC; 0: not known
-  std::uint64_t content = 0;  // content_of() it when it was handed over; 0: not known
+  std::uint64_t content = 0;  // content_of(*this) when it was handed over; 0: not known
 
-  // Keeps the allocated memory.
+  // Keeps the allocated memory, and all but the samples, the joints and their revision.
   void clear() noexcept {
     scene_revision = 0;
     samples.clear();

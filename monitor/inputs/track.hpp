@@ -1,8 +1,8 @@
 // One input over time: the position of a joint, the pose of an object, or the path of a camera's
 // frame in tf. Every sample is judged once, by the one rule of input_record.hpp.
 //
-// The tick asks for the value in use now, and holds no other. What shows where something was at the
-// stamp of a picture asks for a time: it keeps a track, with the values that were taken before.
+// The tick needs the value in use now only. Code that needs a place at the stamp of a picture keeps
+// a Track, which has the values that were taken before as well.
 #pragma once
 
 #include <algorithm>
@@ -20,7 +20,8 @@ template <class Tracked, class Value>
 struct Track {
   Track(const Tracked& initial, std::size_t most_values) : now(initial), past(most_values) {}
 
-  // Judges a sample by take(now), which is that of the kind, and keeps its value if it is taken.
+  // Takes a sample by take(now), which judges it by the rules of its kind and returns the reason of
+  // a refusal. Keeps the value if it is taken.
   template <class Take>
   std::optional<Reject> add(const Value& value, const SampleOrigin& origin,
                             const SampleLimits& limits, std::int64_t age_limit_ns, Take&& take) {

@@ -104,7 +104,7 @@ constexpr auto kWords = [] {
       {kLateTransforms, "late transforms", "transforms up to its stamp have not come in time"},
       {kCannotBuild, "too wide, or too many points",
        "its picture is too wide, or has more points within the range than the cell states"},
-      {kNothingSeen, "nothing seen but the robot",
+      {kNothingSeen, "too little seen beside the robot",
        "nothing is seen within the range but the robot itself. Known bodies at their places do not "
        "fill a quarter of the picture, so nothing shows that the place is clear"},
       {kBeforeJoints, "before the first joints",

@@ -114,7 +114,8 @@ bool RosTransforms::decode(std::uint32_t port, const RawMessage& message, const 
   for (std::uint32_t i = 0; i < message_->transforms._length; ++i) {
     take(message_->transforms._buffer[i], port, message, now, counts);
   }
-  if (from_ == TransformsFrom::kLog) hand_over(topic.source, now);
+  source_ = topic.source;
+  if (from_ == TransformsFrom::kLog) hand_over(source_, now);
   return true;
 }
 
@@ -176,9 +177,7 @@ void RosTransforms::note_parent(const std::string& child, const std::string& par
                  is_last ? "; further changes are not named" : ""));
 }
 
-void RosTransforms::settle(const Now& now) {
-  if (from_ == TransformsFrom::kPublishers) hand_over(std::string(kTf), now);
-}
+void RosTransforms::settle(const Now& now) { hand_over(source_, now); }
 
 // Each base has its own batch, because all positions of a batch have one stamp.
 void RosTransforms::hand_over(const std::string& source, const Now& now) {
@@ -200,7 +199,6 @@ void RosTransforms::give(PoseBatch& batch, const std::string& source) {
 
 bool RosTransforms::is_due(const TrackedFrames::Follower& of, const TfTree::Place& place,
                            const HandedOver& last, const Now& now) const {
-  if (from_ == TransformsFrom::kLog) return true;
   return place.stamp_ns ? *place.stamp_ns != last.stamp_ns
                         : now.monotonic_ns - last.at_ns >= of.age_limit_ns / 3;
 }
@@ -223,11 +221,13 @@ RosTransforms::State RosTransforms::follow(std::size_t follower, const std::stri
                                            const Now& now) {
   const TrackedFrames::Follower& of = frames_.followers()[follower];
   std::string root;
-  const auto place = frames_.find(claims_.tree(), of.frame, &root);
+  const auto place = find(of, nullptr, &root);
   if (!place) {
     if (!root.empty()) return State::kElsewhere;
     return claims_.tree().link(of.frame) == nullptr ? State::kMissing : State::kCircle;
   }
+  if (!place->is_of_one_time) return State::kApart;
+  if (has_lost_rival(of, now)) return State::kDisputed;
   if (from_ == TransformsFrom::kLog) roots_.insert(root);
   std::string suffix;
   for (const std::string& frame : claims_.disputed_on(of.frame)) {
@@ -237,14 +237,38 @@ RosTransforms::State RosTransforms::follow(std::size_t follower, const std::stri
   return State::kFine;
 }
 
+// All transforms of a path are those at the stamp of the oldest one.
+std::optional<TfTree::Place> RosTransforms::find(const TrackedFrames::Follower& of,
+                                                 const TfFrames::Claim* rival, std::string* root,
+                                                 const std::string& at) const {
+  const auto earlier = [&](const std::string& child, const TfTree::Link& link, std::int64_t ns) {
+    const TfFrames::Claim* const claim = rival && child == at ? rival : claims_.used(child);
+    return claim == nullptr ? std::nullopt : TfFrames::pose_in(link.parent, *claim, ns);
+  };
+  if (rival == nullptr) return frames_.find(claims_.tree(), of.frame, root, nullptr, earlier);
+  const TfTree::Instead instead{at, rival->link};
+  return frames_.find(claims_.tree(), of.frame, root, &instead, earlier);
+}
+
+// A rival that leads nowhere gives no pose that could contradict.
+bool RosTransforms::has_lost_rival(const TrackedFrames::Follower& of, const Now& now) const {
+  for (const std::string& frame : claims_.disputed_on(of.frame)) {
+    for (const TfFrames::Claim& rival : claims_.claims(frame).subspan(1)) {
+      if (!TfFrames::is_live(rival, now.monotonic_ns)) continue;
+      const auto place = find(of, &rival, nullptr, frame);
+      if (!place || !place->is_of_one_time) return true;
+    }
+  }
+  return false;
+}
+
 void RosTransforms::follow_rivals(std::size_t follower, const std::string& source, const Now& now) {
   const TrackedFrames::Follower& of = frames_.followers()[follower];
   for (const std::string& frame : claims_.disputed_on(of.frame)) {
     for (const TfFrames::Claim& rival : claims_.claims(frame).subspan(1)) {
       if (!TfFrames::is_live(rival, now.monotonic_ns)) continue;
-      const TfTree::Instead instead{frame, rival.link};
-      const auto place = frames_.find(claims_.tree(), of.frame, nullptr, &instead);
-      if (!place) continue;
+      const auto place = find(of, &rival, nullptr, frame);
+      if (!place || !place->is_of_one_time) continue;
       add(follower, *place, source + rival.suffix, by_rivals_[{follower, frame, rival.suffix}],
           now);
     }
@@ -288,6 +312,10 @@ std::string RosTransforms::what_is_wrong(const TrackedFrames::Follower& follower
     case State::kCircle:
       return fmt::format("whose transforms go round in a circle ({})",
                          circle_of(claims_.tree(), follower.frame));
+    case State::kApart:
+      return "whose path has transforms of times too far apart";
+    case State::kDisputed:
+      return "which another program sends as well, to a parent that does not lead to the world";
     case State::kElsewhere: {
       std::string root;
       static_cast<void>(frames_.find(claims_.tree(), follower.frame, &root));

@@ -24,8 +24,8 @@
 
 namespace clearance {
 
-// A log is replayed message by message: each message on the tf of any namespace gives the poses of
-// all followers. In a log, objects that name no frame follow the frame of their own name.
+// A log is replayed message by message, and has tf in any namespace. In a log, objects that name no
+// frame follow the frame of their own name.
 enum class TransformsFrom : std::uint8_t { kPublishers, kLog };
 
 class RosTransforms final : public Decoder {
@@ -56,7 +56,7 @@ class RosTransforms final : public Decoder {
   [[nodiscard]] std::vector<std::string> worlds() const;
 
  private:
-  enum class State : std::uint8_t { kFine, kMissing, kCircle, kElsewhere };
+  enum class State : std::uint8_t { kFine, kMissing, kCircle, kElsewhere, kApart, kDisputed };
   // The pose handed over last.
   struct HandedOver {
     std::int64_t stamp_ns = 0;
@@ -91,6 +91,11 @@ class RosTransforms final : public Decoder {
            HandedOver& last, const Now& now);
   [[nodiscard]] bool is_due(const TrackedFrames::Follower& of, const TfTree::Place& place,
                             const HandedOver& last, const Now& now) const;
+  // The place by the claims that are used, or with this rival's claim of the frame `at`.
+  [[nodiscard]] std::optional<TfTree::Place> find(const TrackedFrames::Follower& of,
+                                                  const TfFrames::Claim* rival, std::string* root,
+                                                  const std::string& at = {}) const;
+  [[nodiscard]] bool has_lost_rival(const TrackedFrames::Follower& of, const Now& now) const;
   void note(std::size_t follower, State state, const Now& now);
   [[nodiscard]] std::string what_is_wrong(const TrackedFrames::Follower& follower,
                                           State state) const;
@@ -111,6 +116,7 @@ class RosTransforms final : public Decoder {
   std::map<std::string, std::size_t> parents_said_;  // number of reported parents, by child frame
   std::set<std::string> refused_said_;               // child frames
   std::set<std::string> roots_;                      // ends of the followers' chains
+  std::string source_ = "/tf";                       // of the message before
   bool too_many_said_ = false;
   std::vector<Following> following_;  // by follower
   std::map<RivalPath, HandedOver> by_rivals_;

@@ -125,7 +125,7 @@ bool TfFrames::set(const std::string& child, const Publisher& publisher, TfTree:
   set_twist(claim->link, link);
   claim->link = std::move(link);
   claim->heard_ns = monotonic_ns;
-  if (kept_ > 0) note(*claim);
+  note(*claim);
   if (claims.size() > 1) choose(claims, monotonic_ns);
   tree_.set(child, claims.front().link);
   const auto differs = [&](const Claim& other) {
@@ -227,6 +227,13 @@ std::optional<TfFrames::Step> TfFrames::step(const Claim& claim, std::int64_t st
   step.turn_error = error.turn;
   step.longest_ns = error.longest_ns;
   return step;
+}
+
+std::optional<Pose> TfFrames::pose_in(const std::string& parent, const Claim& claim,
+                                      std::int64_t stamp_ns) {
+  const auto then = TfFrames::parent(claim, stamp_ns);
+  const auto found = then && *then->name == parent ? step(claim, stamp_ns) : std::nullopt;
+  return found ? std::optional(found->parent_from_child) : std::nullopt;
 }
 
 void TfFrames::append_stamps(const Claim& claim, std::int64_t first_ns, std::int64_t last_ns,

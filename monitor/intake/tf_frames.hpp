@@ -33,9 +33,10 @@ class TfFrames {
  public:
   static constexpr std::size_t kMostFrames = 4096;
   static constexpr std::size_t kMostClaims = 4;  // for one frame; more say nothing new
+  static constexpr std::size_t kFewKept = 64;
 
   // `kept`: the number of transforms of each claim that can be asked for by their time.
-  explicit TfFrames(std::size_t kept = 0) : kept_(kept) {}
+  explicit TfFrames(std::size_t kept = kFewKept) : kept_(kept) {}
 
   struct Publisher {
     std::uint64_t writer = 0;
@@ -68,7 +69,7 @@ class TfFrames {
       const tf2_msgs_msg_dds__TFMessage_& message, bool is_static);
   // True if the frame is new, and there are too many. Transforms that are kept need memory.
   [[nodiscard]] bool is_one_too_many(const std::string& child) const {
-    const std::size_t most = kept_ > 0 ? kMostFrames / 4 : kMostFrames;
+    const std::size_t most = kept_ > kFewKept ? kMostFrames / 4 : kMostFrames;
     return frames_.size() >= most && !frames_.contains(child);
   }
   // Returns true if this publisher is a rival of the one that is used, and says something else.
@@ -112,6 +113,9 @@ class TfFrames {
   // errors enclose its motion within.
   [[nodiscard]] static std::optional<Step> step(const Claim& claim, std::int64_t stamp_ns,
                                                 std::int64_t within_ns = 0);
+  // Where the claim has its frame in that parent at that time; nothing: not known.
+  [[nodiscard]] static std::optional<Pose> pose_in(const std::string& parent, const Claim& claim,
+                                                   std::int64_t stamp_ns);
   // Appends the stamps of the transforms from the first time to the last one, and those of the two
   // around these times. A static frame has none.
   static void append_stamps(const Claim& claim, std::int64_t first_ns, std::int64_t last_ns,

@@ -44,7 +44,7 @@ Twist carried(const TfTree::Link& link, const Vec3& point, const Twist& in_child
 
 // A path that is longer than the number of frames contains a cycle.
 std::optional<TfTree::Place> TfTree::find(const std::string& frame, const std::string& world,
-                                          const Instead* instead) const {
+                                          const Instead* instead, const Earlier& earlier) const {
   const auto step_from = [&](const std::string& child) {
     return instead != nullptr && instead->child == child ? &instead->link : link(child);
   };
@@ -64,6 +64,20 @@ std::optional<TfTree::Place> TfTree::find(const std::string& frame, const std::s
     }
     place.root = step->parent;
     step = place.root == world ? nullptr : step_from(place.root);
+  }
+  if (!earlier || !place.stamp_ns) return place;
+  place.root_from_frame = {};
+  const std::string* child = &frame;
+  for (step = step_from(frame); step != nullptr;
+       step = *child == world ? nullptr : step_from(*child)) {
+    Pose pose = step->parent_from_child;
+    if (step->stamp_ns && *step->stamp_ns > *place.stamp_ns) {
+      const auto then = earlier(*child, *step, *place.stamp_ns);
+      place.is_of_one_time = place.is_of_one_time && then;
+      if (then) pose = *then;
+    }
+    place.root_from_frame = compose(pose, place.root_from_frame);
+    child = &step->parent;
   }
   return place;
 }

@@ -2,6 +2,7 @@
 #pragma once
 
 #include <cstdint>
+#include <functional>
 #include <map>
 #include <optional>
 #include <string>
@@ -24,6 +25,7 @@ class TfTree {
     // velocity: the transforms of a path have different stamps, so differences of poses give none.
     std::optional<Twist> twist = Twist{};
     std::int64_t interval_ns = 0;  // the longest time over which a part of `twist` is the mean
+    bool is_of_one_time = true;    // false: where a newer transform was at `stamp_ns` is not known
   };
   struct Link {
     std::string parent;
@@ -44,11 +46,16 @@ class TfTree {
     const Link& link;
   };
 
+  // Where a child was in its parent at a time before the stamp of its link. Nothing: not known.
+  using Earlier =
+      std::function<std::optional<Pose>(const std::string& child, const Link&, std::int64_t)>;
+
   // Returns the pose of a frame in `world`, or in the root of its tree if the path does not contain
   // `world`. Returns nothing if no transform has this frame as child, or if the transforms form a
-  // cycle.
+  // cycle. With `earlier`, all transforms of the path are those at its oldest stamp.
   [[nodiscard]] std::optional<Place> find(const std::string& frame, const std::string& world = "",
-                                          const Instead* instead = nullptr) const;
+                                          const Instead* instead = nullptr,
+                                          const Earlier& earlier = {}) const;
 
   // Returns null if no transform has this frame as child.
   [[nodiscard]] const Link* link(const std::string& child) const;

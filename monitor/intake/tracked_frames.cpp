@@ -34,9 +34,9 @@ TrackedFrames::TrackedFrames(const Cell& cell, ByName by_name)
 }
 
 std::optional<TfTree::Place> TrackedFrames::find(const TfTree& tree, const std::string& frame,
-                                                 std::string* root,
-                                                 const TfTree::Instead* instead) const {
-  auto place = tree.find(frame, *world_frame_, instead);
+                                                 std::string* root, const TfTree::Instead* instead,
+                                                 const TfTree::Earlier& earlier) const {
+  auto place = tree.find(frame, *world_frame_, instead, earlier);
   if (!place) return std::nullopt;
   if (root != nullptr) *root = place->root;
   if (const auto robot = world_from_root_link_.find(place->root);

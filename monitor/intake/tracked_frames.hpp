@@ -42,7 +42,8 @@ class TrackedFrames {
   // `root` gets the frame to which they lead.
   [[nodiscard]] std::optional<TfTree::Place> find(const TfTree& tree, const std::string& frame,
                                                   std::string* root = nullptr,
-                                                  const TfTree::Instead* instead = nullptr) const;
+                                                  const TfTree::Instead* instead = nullptr,
+                                                  const TfTree::Earlier& earlier = {}) const;
 
   // Adds the sample of a follower's frame at this time: a pose of an object, or positions of a
   // robot. All positions of a batch have one stamp, so a batch of positions belongs to one robot.

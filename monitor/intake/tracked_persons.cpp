@@ -29,10 +29,15 @@ bool has_a_joint_of(const std::string& body, const Robot& person, const Scene& s
   });
 }
 
+struct Given {
+  std::vector<State> states;  // by person
+  bool has_all = true;        // each body has a person
+};
+
 // A body keeps its person, so that what is known of it stays.
-std::vector<State> states_by(std::vector<std::string> bodies, std::span<const Robot*> persons,
-                             const Scene& scene) {
-  std::vector<State> states(persons.size());
+Given give(std::vector<std::string> bodies, std::span<const Robot*> persons, const Scene& scene) {
+  Given result{.states = std::vector<State>(persons.size())};
+  std::vector<State>& states = result.states;
   std::vector<std::size_t> free;
   for (std::size_t i = 0; i < persons.size(); ++i) {
     const State before = state_of(*persons[i], scene);
@@ -53,12 +58,22 @@ std::vector<State> states_by(std::vector<std::string> bodies, std::span<const Ro
   std::size_t given = 0;
   for (const std::string& body : bodies) {
     if (given == free.size() || !is_body_id(body) || is_taken(body, *persons[free[given]])) {
-      states.back() = "";
+      result.has_all = false;
     } else {
       states[free[given++]] = body;
     }
   }
-  return states;
+  return result;
+}
+
+// If a body has no person, the last one is unknown for it, and is no other body's.
+std::vector<State> states_by(const std::vector<std::string>& bodies,
+                             std::span<const Robot*> persons, const Scene& scene) {
+  Given given = give(bodies, persons, scene);
+  if (given.has_all) return std::move(given.states);
+  given = give(bodies, persons.first(persons.size() - 1), scene);
+  given.states.emplace_back("");
+  return std::move(given.states);
 }
 
 }  // namespace

@@ -27,16 +27,13 @@ inline constexpr LogLine<Text> kHowToReach{"how-to-reach", kInfo, "{}"};
 inline constexpr LogLine<Text> kSystemRefuses{"system-refuses", kWarn, "{}"};
 inline constexpr LogLine<Text> kPartitionWithoutRos{
     "partition-without-ros", kWarn,
-    "ROS 2 uses the default partition only: in partition {}, tf does not arrive and no node of ROS "
-    "2 receives what this program writes for it"};
+    "ROS 2 uses the default partition only: in {}, no tf comes, and no node gets what is written"};
 inline constexpr LogLine<Text> kNoSpeedScaling{
     "no-speed-scaling", kWarn,
-    "{} is not published: no zone of the cell defines the scaling of speeds. Add a zone to the "
-    "cell ('zones:'), with 'separation:' for speeds between 0 and 1"};
+    "{} is not published: the cell has no zone; one with 'separation:' scales from 0 to 1"};
 inline constexpr LogLine<Text> kStopped{"stopped", kInfo, "stopped after {}"};
 inline constexpr LogLine<Text> kReading{"cell-read-again", kInfo,
-                                        "SIGHUP came (from a person, or from a terminal that was "
-                                        "closed): {} is read again; SIGTERM ends the daemon"};
+                                        "SIGHUP came: {} is read again; SIGTERM ends the daemon"};
 inline constexpr LogLine<Count, Count, Count> kSceneChanged{
     "scene-changed", kInfo,
     "the cell's revision {:016x} is in force from cycle {}, and {:016x} is not any more"};
@@ -396,5 +393,8 @@ inline constexpr LogLine<Text, Count, Text> kShareSceneRefused{
     "the scene of the share '{}', revision {:016x}, is not here; this share is not whole: {}"};
 inline constexpr LogLine<Text, Text> kShareCatalogueRefused{
     "share-catalogue-refused", kWarn, "messages with the scene of the share '{}' are not used: {}"};
+inline constexpr LogLine<Text> kShareAlone{
+    "share-alone", kError,
+    "the share '{}', which applies the lists of bodies, is gone: all persons are unknown"};
 
 }  // namespace clearance::lines

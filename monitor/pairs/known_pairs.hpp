@@ -44,7 +44,7 @@ class KnownPairs {
   // False: nothing changed.
   bool set(std::size_t object, bool is_member, Kind& kind) noexcept;
 
-  std::size_t words_;                      // of a line
+  std::size_t words_;                      // in a row of `neighbours_`
   std::vector<std::uint64_t> neighbours_;  // one row of bits per object: its partners in pairs
   Kind present_, known_, fresh_;
   std::vector<std::uint32_t> regained_;

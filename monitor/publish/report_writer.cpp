@@ -46,6 +46,9 @@ dds_entity_t make_writer(Participant& participant, const Topics& topics, TopicKi
   return writer;
 }
 
+// Other shares learn within this time that a daemon is gone.
+constexpr std::int64_t kShareLeaseNs = 1'000'000'000;
+
 }  // namespace
 
 std::int64_t lease_ns(double rate_hz) noexcept {
@@ -84,7 +87,8 @@ ReportWriter::ReportWriter(const Cell& cell, Participant& participant, ReportQue
       distances_(make_writer(
           participant, topics_, TopicKind::kDistances,
           {.lease_ns = lease_ns(cell.scene.rate_hz), .user_data = to_user_data(identity_)})),
-      catalogue_(make_writer(participant, topics_, TopicKind::kCatalogue)),
+      catalogue_(make_writer(participant, topics_, TopicKind::kCatalogue,
+                             {.process_lease_ns = cell.shares.is_one() ? kShareLeaseNs : 0})),
       health_(make_writer(participant, topics_, TopicKind::kHealth)),
       others_(participant, topics_.distances, identity_),
       now_(std::make_unique<CellMessages>(cell, SceneInForce(), queue, identity_.id)),

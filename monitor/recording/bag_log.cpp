@@ -150,6 +150,8 @@ void BagLog::take(const Message& message) {
                {.realtime_ns = log_ns_, .monotonic_ns = log_ns_});
   if (time_ && time_->clock_ns() < clock_ns && given_ns_ > 0) return end_run(clock_ns);
   settle();
+  // A message that moves nothing shows that the time has passed without one that does.
+  if (decoded_.empty() && given_out_) decoded_.push_back({.batch = {}, .log_ns = time_ns()});
 }
 
 // Returns the time of the clock. A recorder with the time of a clock gives all messages of one step
@@ -182,9 +184,10 @@ void BagLog::settle() {
   for (News& news : intake_.take_news()) {
     const bool is_unused =
         news.code == lines::kTopicNotUsed.code && news.level == lines::kTopicNotUsed.level;
-    const bool is_told = is_unused || news.code == lines::kSlowInput.code ||
-                         news.code == lines::kBodiesSilent.code ||
-                         news.code == lines::kTooManyBodies.code;
+    const bool is_told =
+        is_unused || news.code == lines::kSlowInput.code ||
+        news.code == lines::kBodiesSilent.code || news.code == lines::kTooManyBodies.code ||
+        news.code == lines::kFrameRefused.code || news.code == lines::kFrameMissing.code;
     if (is_told && std::ranges::find(told_, news.text) == told_.end())
       told_.push_back(std::move(news.text));
   }

@@ -20,7 +20,7 @@ struct RawScene;
 }
 struct RawSensorMessage;
 
-// One message.
+// One message. With an empty batch alone, it moves nothing, and tells how late it is.
 struct LoggedBatch {
   PoseBatch batch;
   // When it was recorded. With `use_sim_time`, no earlier than the stamps that lead the time.

@@ -53,6 +53,7 @@ LogRecordingResult record_log(const std::filesystem::path& log, const std::files
       result.error = fmt::format("stopped after {} batches of {}", result.batches, log.string());
       break;
     }
+    if (batch.batch.empty()) continue;
     writer.roll(batch.log_ns);
     write(batch, cell.scene, writer, *poses);
     ++result.batches;

@@ -38,7 +38,8 @@ class Monitor;  // monitor/tick/monitor.hpp, in the source tree
 // All are optional: without any, the replay only runs.
 struct OfflineReplayOptions {
   // Ticks in this window (s after the first tick) are compared, judged and handed out. Earlier
-  // ticks are run all the same, since bounds and zones depend on them.
+  // ticks are run all the same, since bounds and zones depend on them. Where the recorded time goes
+  // back, it is counted on from there.
   double start_s = 0.0;
   double end_s = std::numeric_limits<double>::infinity();
 

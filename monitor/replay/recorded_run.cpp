@@ -3,6 +3,11 @@
 #include <utility>
 
 namespace clearance {
+namespace {
+
+constexpr std::int64_t kJustPublishedNs = 100'000'000;
+
+}  // namespace
 
 RecordedRun::RecordedRun(const std::vector<std::filesystem::path>& files,
                          const RecordedRunOptions& options, Use use)
@@ -15,17 +20,40 @@ RecordedRun::RecordedRun(const std::vector<std::filesystem::path>& files,
 }
 
 bool RecordedRun::next() {
-  while (waiting_.empty()) {
-    if (!read_one()) return false;
-  }
-  tick_ = std::move(waiting_.front());
-  waiting_.pop_front();
+  const bool is_first = last_cycle_ == 0;
+  const std::uint64_t daemon = is_first ? 0 : report().daemon;
+  do {
+    while (waiting_.empty()) {
+      if (!read_one()) return false;
+    }
+    tick_ = std::move(waiting_.front());
+    waiting_.pop_front();
+  } while (!is_first && report().daemon != daemon && goes_on(daemon));
   joins_ = tick_.joined != 0 && tick_.joined != joined_;
   if (joins_) joined_ = tick_.joined;
-  // A daemon that was started again counts from 1.
-  is_restart_ = !joins_ && last_cycle_ != 0 && report().cycle <= last_cycle_;
+  // A daemon that was started again counts from 1. A partner may go on in its place.
+  is_restart_ =
+      !joins_ && !is_first && (report().cycle <= last_cycle_ || report().daemon != daemon);
   last_cycle_ = report().cycle;
+  own_ns_ = tick_.log_ns;
   return true;
+}
+
+// The tick that was read last is of another daemon. It ran beside this one if this one goes on, or
+// has just published; one that begins does not.
+bool RecordedRun::goes_on(std::uint64_t daemon) {
+  if (report().cycle > 1 && tick_.log_ns - own_ns_ < kJustPublishedNs) {
+    ++of_others_;
+    return true;
+  }
+  for (std::size_t i = 0;; ++i) {
+    while (i == waiting_.size()) {
+      if (!read_ahead()) return false;
+    }
+    if (waiting_[i].report->daemon != daemon) continue;
+    ++of_others_;
+    return true;
+  }
 }
 
 // Puts the message into the queue of its kind.

@@ -39,8 +39,9 @@ class RecordedRun {
   RecordedRun(const RecordedRun&) = delete;
   RecordedRun& operator=(const RecordedRun&) = delete;
 
-  // Goes on to the next report; false at the end or the damage. Everything that is returned by a
-  // pointer or reference is valid until the next call.
+  // Goes on to the next report; false at the end or the damage. Where several daemons published at
+  // once, as partners do, the reports are those of one, as long as it publishes. Everything that is
+  // returned by a pointer or reference is valid until the next call.
   [[nodiscard]] bool next();
   // Reads one message behind the report. False: there is none that could belong to its tick.
   bool read_ahead() { return read_to_ns_ < tick_.log_ns + kLogDisorderNs && read_one(); }
@@ -49,7 +50,7 @@ class RecordedRun {
 
   [[nodiscard]] const clearance_msg_Distances& report() const noexcept { return *tick_.report; }
   [[nodiscard]] std::int64_t log_ns() const noexcept { return tick_.log_ns; }
-  // The daemon had been started anew, so that its monitor had no history.
+  // The daemon had been started anew, or another one goes on, so that its monitor has no history.
   [[nodiscard]] bool is_restart() const noexcept { return is_restart_; }
   // The daemon went on from a state of its partner, and this is the number of that state in the
   // recording. 0: it went on from its own.
@@ -73,12 +74,16 @@ class RecordedRun {
   [[nodiscard]] const TickMessages<clearance_msg_Gradients>& all_gradients() const noexcept {
     return gradients_;
   }
+  // The number of reports of daemons that ran beside the one that is replayed.
+  [[nodiscard]] std::uint64_t of_others() const noexcept { return of_others_; }
   // The number of reports that do not decode.
   [[nodiscard]] std::uint64_t undecodable() const noexcept { return undecodable_; }
   [[nodiscard]] std::int64_t read_to_ns() const noexcept { return read_to_ns_; }
   [[nodiscard]] const RecordingReader& reader() const noexcept { return reader_; }
 
  private:
+  [[nodiscard]] bool goes_on(std::uint64_t daemon);
+
   struct Tick {
     Sample<clearance_msg_Distances> report;
     std::int64_t log_ns = 0;
@@ -98,8 +103,9 @@ class RecordedRun {
   Sample<clearance_msg_PartnerState> state_;
   bool is_restart_ = false, joins_ = false;
   std::uint64_t joined_ = 0;  // the number of the last state
-  std::uint64_t last_cycle_ = 0, undecodable_ = 0;
+  std::uint64_t last_cycle_ = 0, undecodable_ = 0, of_others_ = 0;
   std::int64_t read_to_ns_ = 0;
+  std::int64_t own_ns_ = 0;  // log time of the last report that was replayed
 };
 
 }  // namespace clearance

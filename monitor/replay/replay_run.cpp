@@ -163,11 +163,20 @@ void ReplayRun::change_scene(const TickInput& input, const Report& report) {
 // Cycle numbers of the daemon and of the replay differ by the number of ticks that the recording
 // lacks.
 void ReplayRun::begin_tick(const TickInput& input) {
-  if (ran_++ == 0) first_ns_ = input.time.now_ns;
-  last_ns_ = input.time.now_ns;
+  const std::int64_t now_ns = input.time.now_ns;
+  if (ran_++ == 0) {
+    first_ns_ = now_ns;
+  } else if (now_ns < last_ns_) {
+    note("the time goes back by {:f} s, {:f} s after the first tick: it is counted on from there",
+         static_cast<double>(last_ns_ - now_ns) * 1e-9, seconds(last_ns_));
+    first_ns_ -= last_ns_ - now_ns;
+    result_.first_ns -= last_ns_ - now_ns;
+  }
+  last_ns_ = now_ns;
   if (input.restart) {
     restarted_ = true;
-    note("the daemon was started anew {:f} s after the first tick", seconds(input.time.now_ns));
+    note("the daemon was started anew, or another one goes on, {:f} s after the first tick",
+         seconds(now_ns));
   }
   if (input.recorded == nullptr) return;
   const std::uint64_t cycle = input.recorded->cycle;

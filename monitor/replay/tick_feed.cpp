@@ -216,6 +216,8 @@ std::vector<std::string> TickFeed::notes(bool compared) const {
     if (count > 0) notes.push_back(fmt::format("{} {}", count, what));
   };
   note(not_in_the_file_, "batches that a tick used are not in the recording");
+  note(run_ ? run_->of_others() : 0,
+       "reports are of a daemon that ran beside the one that is replayed, and were left out");
   note(of_other_scenes_, "batches were made for a scene that the recording does not name");
   note(silences_,
        "pauses were longer than 20 s: after 10 s, ticks were left out until something came");
@@ -301,6 +303,10 @@ void TickFeed::use_until_now(TickInput& tick) {
       continue;
     }
     PoseBatch& batch = waiting_.front().batch;
+    if (batch.empty()) {
+      waiting_.pop_front();
+      continue;
+    }
     const SourceUse last{batch.source, batch.sequence_number};
     add(batch, tick);
     const auto use = std::ranges::find(tick.sources, last.source, &SourceUse::source);

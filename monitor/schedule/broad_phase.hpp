@@ -1,12 +1,12 @@
 // The broad phase decides which pairs a tick can provably leave alone. BROAD_PHASE.md has the
 // proof and the reasons.
 //
-// A pair is culled while its lower bound L, less the displacement of its objects since then and
-// less U, is at least H and Z. U is the unobserved motion of late objects, now and since the
+// A pair is culled while its lower bound L, less the displacement of its objects since L was proved
+// and less U, is at least H and Z. U is the unobserved motion of late objects, now and since the
 // last tick. H is the horizon, which is no smaller than a certified minimum over all pairs. Z is
-// the level that the pair's zones watch for. The pair has a timer on
-// the motion wheels of both objects, and the allowance s above those levels is divided between the
-// two. All other pairs are active, and updated in every tick, or wait (untouched_pairs.hpp).
+// the level that the pair's zones watch for. The pair has a timer on the motion wheels of both
+// objects, and the allowance s above those levels is divided between the two. All other pairs are
+// active, and updated in every tick, or wait (untouched_pairs.hpp).
 #pragma once
 
 #include <cstdint>

@@ -31,7 +31,8 @@ class SweptSearch {
     double lower = -kInfinity, upper = kInfinity;
     // The motion is that of one object relative to the other. These two are in the frame of the
     // latter.
-    Vec3 normal = Vec3::Zero();  // towards the other; zero: it need not separate after more motion
+    // Towards the other; zero: no direction is known that separates them after more motion, too.
+    Vec3 normal = Vec3::Zero();
     Vec3 centre = Vec3::Zero();  // of the other's sphere
   };
   // The time between two neighbouring instants.

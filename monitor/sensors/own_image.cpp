@@ -67,7 +67,8 @@ std::size_t OwnImage::leave_out(const Sensor& sensor, bool along_ray, const Past
       .cloud = cloud,
       .body = body,
       .limit = {.error = {.constant = sensor.error_constant, .quadratic = sensor.error_quadratic},
-                .along_ray = along_ray}};
+                .along_ray = along_ray,
+                .large = sensor.trusted_shell}};
   Unseen* const places = of_sensor(sensor);
   if (places != nullptr) {
     places->is_built = std::ranges::all_of(places->clouds, [&](DepthCloud& each) {

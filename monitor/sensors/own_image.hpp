@@ -55,8 +55,8 @@ class OwnImage {
       if (groups > 1 || sensor.knows) others = clouds;
     }
     std::vector<DepthCloud> clouds;  // by group
-    // By group: what is seen, without the images of bodies that do not hang together with it. Empty
-    // if there is one group only, and no known body.
+    // By group: what is seen, less the images of robots that neither carry this group nor stand on
+    // it. Empty if there is one group only, and no known body.
     std::vector<DepthCloud> others;
     CloudTracking tracking;
     bool is_built = false;

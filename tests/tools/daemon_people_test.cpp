@@ -97,6 +97,48 @@ TEST_F(DaemonPeople, OfASimulationStandWhereItHasTheirFrames) {
   EXPECT_TRUE(robot.wrote("nothing is sent of 'two'")) << robot.output();
 }
 
+// The daemon of the first share applies the lists of bodies for all. Without it, nothing says in
+// the other share that no person is there, whatever the tracker goes on to say.
+TEST(PeopleInShares, AreUnknownWhileNoDaemonOfTheFirstShareIsThere) {
+  const CellFile cell(
+      "name: people in shares\nunits: {length: m, angle: rad}\nrate_hz: 100\n"
+      "ros2: {world_frame: map, tracked_bodies: /hall/people}\nrobots:\n"
+      "  - {name: one, person: {stature: 1.75, error: 0.1}, groups: [people], absent: true}\n"
+      "objects:\n  - {name: here, fixed: true, sphere: {radius: 0.1}}\n"
+      "  - {name: there, fixed: true, sphere: {radius: 0.1}, pose: {xyz: [10, 0, 1]}}\n"
+      "pairs: [{between: [people, here]}, {between: [people, there]}]\n"
+      "zones: [{name: near, between: [people, there], enter_below: 1, leave_above: 1.1}]\n"
+      "shares: [{name: first, pairs: [{between: [people, here]}]}, {name: second, pairs: "
+      "[{between: [people, there]}]}]\n");
+  const DdsOptions dds = own_dds();
+  const auto share = [&](const std::string& name) {
+    return std::make_unique<ChildProcess>(kDaemon,
+                                          with({cell.path(), "--share", name}, dds_arguments(dds)));
+  };
+  auto first = share("first"), second = share("second");
+  client::Connection connection(dds);
+  people::RosTracker tracker(connection, "map", "/hall/people");
+  // The last line of these codes, while the tracker lists no body.
+  const auto last_is = [&](const std::string& code) {
+    return eventually([&] {
+      tracker.list({}, client::now_ns());
+      std::string last;
+      std::istringstream lines(second->output());
+      for (std::string line; std::getline(lines, line);)
+        for (const char* each : {"topic-heard", "zone-unknown", "zone-left"})
+          if (line.ends_with("[" + std::string(each) + "]")) last = each;
+      return last == code;
+    });
+  };
+  ASSERT_TRUE(last_is("topic-heard")) << second->output();
+  first->signal(SIGKILL);
+  first->wait();
+  EXPECT_TRUE(last_is("zone-unknown")) << second->output();
+  EXPECT_TRUE(second->told("share-alone", {"'first'"})) << second->output();
+  first = share("first");
+  EXPECT_TRUE(last_is("zone-left")) << first->output() << second->output();
+}
+
 // The output of the demo, as far as it does not depend on the machine.
 TEST(ArmBesidePeople, FindsNoFalseBoundAgainstTheTrueBody) {
   const std::string cell = test::places::sources() + "/config/cells/people.yaml";

@@ -179,6 +179,28 @@ TEST_F(Robots, PairsThatTheSrdfDisablesMayTouch) {
               testing::Contains(HasSubstr("1 disabled pair left out: 1 of two fixed links")));
 }
 
+// Such a base follows a frame of tf, if the cell says so.
+TEST_F(Robots, WhoseSrdfLetsTheBaseMoveSaySoWhereTheCellHasItStill) {
+  const auto notes = [this](const std::string& type, const std::string& base) {
+    std::string srdf = test::read_text(folder_ / "walker_description/walker.srdf");
+    srdf.insert(srdf.find("</robot>"), "<virtual_joint name='v' type='" + type +
+                                           "' parent_frame='odom' child_link='foot'/>");
+    test::write_text(folder_ / "walker_description/moved.srdf", srdf);
+    const Scene cell = scene(
+        "  - {name: walker, urdf: walker_description/walker.urdf, srdf: "
+        "walker_description/moved.srdf" +
+            base + "}\n",
+        "ros2: {world_frame: map}\n" + kSelf);
+    return cell.robots.front().notes;
+  };
+  const auto is_said = testing::Contains(HasSubstr("frame 'odom'"));
+  EXPECT_THAT(notes("planar", ""), is_said);
+  EXPECT_THAT(notes("floating", ""), is_said);
+  EXPECT_THAT(notes("fixed", ""), testing::Not(is_said));
+  EXPECT_THAT(notes("planar", ", base: {frame: base_link}"), testing::Not(is_said));
+  EXPECT_THAT(notes("planar", ", base: {pose: {xyz: [1, 0, 0]}}"), testing::Not(is_said));
+}
+
 // Each topic of joint states is a source, and so is tf for their bases.
 TEST_F(Robots, ThatCanNeedMoreSourcesThanAreHeardSaySo) {
   const auto is_said = [this](int robots, const std::string& more) {

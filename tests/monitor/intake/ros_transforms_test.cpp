@@ -87,6 +87,7 @@ class RosTransformsTest : public testing::Test {
 // Objects: cart 0, tool 1.
 TEST_F(RosTransformsTest, LeadThroughParentsToTheWorldWithTheStampOfTheOldest) {
   send_at(now(), {{"cart", "cart_link", {0, 0, 1}}}, kStatic, 2);
+  send_at(now() - 30 * kTransformMs, {{"odom", "cart", {3, 0, 0}}});
   send_at(now() - 20 * kTransformMs, {{"map", "odom", {1, 2, 0}, {0, 0, kHalf, kHalf}}});
   send_at(now() - 5 * kTransformMs,
           {{"odom", "cart", {3, 0, 0}}, {"/nowhere", "wheel", {9, 9, 9}}});
@@ -104,7 +105,7 @@ TEST_F(RosTransformsTest, LeadThroughParentsToTheWorldWithTheStampOfTheOldest) {
   // A transform that does not change the oldest stamp brings no new information.
   send_at(now() - 1 * kTransformMs, {{"odom", "cart", {4, 0, 0}}});
   EXPECT_TRUE(settled().empty());
-  send_at(now(), {{"map", "odom", {1, 2, 0}}});
+  send_at(now() - 1 * kTransformMs, {{"map", "odom", {1, 2, 0}}});
   batches = settled();
   ASSERT_EQ(batches.size(), 1u);
   EXPECT_EQ(batches[0].sequence_number, 2u);
@@ -177,7 +178,9 @@ TEST_F(RosTransformsTest, OfARivalLeadThroughItsOwnParents) {
   send({{"map", "odom", {1, 0, 0}}, {"odom", "cart_link", {0.5, 0, 0}}}, "/tf", 1);
   EXPECT_EQ(places_of(0), (Places{{"/tf", 1.5}}));
   send({{"map", "other", {7, 0, 0}}, {"other", "odom", {2, 0, 0}}}, "/tf", 2);
-  EXPECT_EQ(places_of(0), (Places{{"/tf#2", 9.5}}));
+  EXPECT_EQ(places_of(0), (Places{})) << "where the cart is by the other one is not known yet";
+  send({{"map", "odom", {1, 0, 0}}, {"odom", "cart_link", {0.5, 0, 0}}}, "/tf", 1);
+  EXPECT_EQ(places_of(0), (Places{{"/tf", 1.5}, {"/tf#2", 9.5}}));
 }
 
 // An invalid pose leaves the frame where it was. Frames without names are also refused.
@@ -237,6 +240,8 @@ TEST_F(RosTransformsTest, ThatGoRoundInACircleSayNothingUntilTheyDoNot) {
   EXPECT_EQ(batches[0].samples[0].object, 1u);
   // The frame gets another parent.
   send({{"map", "b", {1, 0, 0}}});
+  EXPECT_TRUE(settled().empty()) << "the others are older";
+  send({{"a", "cart_link"}, {"b", "a"}});
   EXPECT_EQ(place_of(0), Vec3(1, 0, 0));
 }
 
@@ -287,18 +292,55 @@ TEST_F(RosTransformsTest, ThatAreMissingAreToldAfterFiveSeconds) {
   EXPECT_EQ(heard.told(lines::kFrameMissing.code), 1u) << "the tool, which leads elsewhere";
 }
 
-// A log gives the poses of all followers with every message, in any namespace. Objects without a
-// configured frame follow the frame of their own name.
-TEST_F(RosTransformsTest, OutOfALogSayWithEveryMessageWhereAllFollowersAre) {
+// In a log, tf may have any namespace. Objects without a configured frame follow the frame of their
+// own name.
+TEST_F(RosTransformsTest, OutOfALogSayWhereFollowersAre) {
   Heard log(cell, {.is_log = true});
   log.take(transforms(now(), now(), {{"map", "cart_link", {1, 0, 0}}}, "/r2/tf_static"), 0);
   EXPECT_EQ(log.one().source.view(), "/r2/tf");
   log.take(transforms(now() + 1, now() + 1, {{"map", "wheel"}}, "/r2/tf"), 0);
-  EXPECT_EQ(log.one().samples.size(), 1u) << "the cart again";
+  EXPECT_TRUE(log.all().empty()) << "nothing is new";
   log.take(transforms(now() + 2, 5, {{"map", "tool0"}}, "/r2/tf"), 0);
-  const PoseBatch both = log.one();
-  ASSERT_EQ(both.samples.size(), 2u);
-  EXPECT_EQ(both.samples[1].stamp_ns, now() + 2) << "the stamp is of another clock";
+  const PoseBatch tool = log.one();
+  ASSERT_EQ(tool.samples.size(), 1u);
+  EXPECT_EQ(tool.samples[0].stamp_ns, now() + 2) << "the stamp is of another clock";
+}
+
+// The platform goes back as fast as the cart on it goes forth, so that the cart stands still. The
+// platform's transforms come ten times less often, and 30 ms late.
+TEST_F(RosTransformsTest, OfOnePathAreThoseOfOneTime) {
+  const std::int64_t begin = now();
+  std::size_t count = 0;
+  for (int step = 0; step <= 60; ++step) {
+    const double s = 0.01 * step;
+    send_at(now(), {{"plat", "cart_link", {s, 0, 0}}});
+    if (step % 10 == 3)
+      send_at(begin + (step - 3) * 10 * kTransformMs, {{"map", "plat", {0.8 - s + 0.03, 0, 0}}},
+              "/tf", 2);
+    for (const PoseBatch& batch : settled()) {
+      for (const PoseSample& sample : batch.samples) {
+        EXPECT_NEAR(sample.world_from_object.position.x(), 0.8, 1e-12) << step;
+        EXPECT_EQ((sample.stamp_ns - begin) % (100 * kTransformMs), 0);
+        ++count;
+      }
+    }
+    heard.pass(10 * kTransformMs);
+  }
+  EXPECT_EQ(count, 6u);
+}
+
+// A rival without a path to the world contradicts as one with another place does.
+TEST_F(RosTransformsTest, OfARivalThatLeadsNowhereLeaveTheFrameWithoutAPlace) {
+  send({{"map", "cart_link", {1, 0, 0}}});
+  EXPECT_EQ(settled().size(), 1u);
+  send({{"lost", "cart_link", {1, 0, 0}}}, "/tf", 2);
+  send({{"map", "cart_link", {1.1, 0, 0}}});
+  EXPECT_TRUE(settled().empty());
+  for (int i = 0; i < 25; ++i) {  // the rival is silent for more than a second
+    heard.pass(50 * kTransformMs);
+    send({{"map", "cart_link", {1.2, 0, 0}}});
+  }
+  EXPECT_FALSE(settled().empty());
 }
 
 // The cell's world is a frame of the tree, but not its root.

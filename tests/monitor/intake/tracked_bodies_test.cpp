@@ -38,13 +38,17 @@ class TrackedPersons : public testing::Test {
  protected:
   // Returns what each person is then: its body, "absent", or "unknown".
   std::vector<std::string> after(const std::optional<std::vector<std::string>>& bodies) {
+    std::vector<std::string> states = after_once(bodies);
+    EXPECT_TRUE(changes_by_bodies(bodies, cell_.scene).empty()) << "the same list changes nothing";
+    return states;
+  }
+  std::vector<std::string> after_once(const std::optional<std::vector<std::string>>& bodies) {
     const std::vector<CellChange> changes = changes_by_bodies(bodies, cell_.scene);
     if (!changes.empty()) {
       auto result = editor_.edit(changes);
       if (const auto* refusal = std::get_if<EditRefusal>(&result)) ADD_FAILURE() << refusal->reason;
       cell_ = std::get<Cell>(std::move(result));
     }
-    EXPECT_TRUE(changes_by_bodies(bodies, cell_.scene).empty()) << "the same list changes nothing";
     std::vector<std::string> states;
     for (const Robot& robot : cell_.scene.robots) {
       const bool is_absent = cell_.scene
@@ -79,6 +83,28 @@ TEST_F(TrackedPersons, OfWhomThereAreTooManyMakeTheLastOneUnknown) {
   EXPECT_THAT(after({{"b1", "not an id"}}), ElementsAre("b1", "unknown"));
   EXPECT_THAT(after({{"one"}}), ElementsAre("absent", "unknown")) << "the name of a robot";
   EXPECT_THAT(after({{"b5", "b5"}}), ElementsAre("b5", "unknown")) << "a place is free for each";
+}
+
+// Whatever the order: an id has a person of its own, or the last person is unknown and may be it. A
+// body that loses the last person to that gets another one with the next list.
+TEST_F(TrackedPersons, OfAllListsOfFourStandForEveryBody) {
+  const std::vector<std::string> ids = {"b1", "b2", "no id", "one"};
+  test::EveryChoice choice;
+  while (choice.next()) {
+    std::vector<std::string> bodies(choice.of(5));
+    for (std::string& body : bodies) body = ids[choice.of(ids.size())];
+    for (const std::vector<std::string>& states : {after_once(bodies), after(bodies)}) {
+      std::vector<std::string> without = bodies;
+      for (const std::string& state : states) {
+        const auto found = std::ranges::find(without, state);
+        if (found != without.end()) without.erase(found);
+      }
+      ASSERT_EQ(states.back() == "unknown", !without.empty())
+          << testing::PrintToString(bodies) << " " << testing::PrintToString(states);
+      ASSERT_NE(states.front(), "unknown");
+    }
+  }
+  EXPECT_EQ(choice.runs(), 1u + 4u + 16u + 64u + 256u);
 }
 
 TEST_F(TrackedPersons, AreUnknownWhileNothingSaysWhichAreThere) {

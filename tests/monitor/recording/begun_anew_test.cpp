@@ -1,4 +1,5 @@
 // Recordings of a time that goes back, as that of a simulation does.
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -14,13 +15,15 @@ class BegunAnew : public OfflineReplayTest {
  protected:
   static constexpr int kTicks = 700;
 
-  // Returns the files in their order.
-  std::vector<std::filesystem::path> record(const RecordingOptions& options, int back_at) {
+  // Returns the files in their order. `begins_ns`: the time to which it goes back.
+  std::vector<std::filesystem::path> record(const RecordingOptions& options, int back_at,
+                                            std::int64_t begins_ns = kStart) {
     cell.scene.objects[0].max_speed = 1000.0;
     Monitor monitor(cell.scene);
     Recorder recorder(run, cell, kStart, options);
     for (int tick = 0; tick < kTicks; ++tick) {
-      const std::int64_t now_ns = kStart + (tick < back_at ? tick : tick - back_at) * kTick;
+      const std::int64_t now_ns =
+          tick < back_at ? kStart + tick * kTick : begins_ns + (tick - back_at) * kTick;
       const auto sequence = static_cast<std::uint64_t>(tick + 1);
       const double height = tick >= 500 && tick < 520 ? 0.05 : 0.5;
       PoseBatch batch{SourceName("all"), sequence, cell.scene.revision, {}};
@@ -60,6 +63,22 @@ TEST_F(BegunAnew, GoesOnInAnotherFileAndReplaysToTheBit) {
       replay_offline(cell, run, {.compare = Comparison::kBits, .continued_in = {files[1]}});
   EXPECT_TRUE(same.ok()) << same.text();
   EXPECT_EQ(same.compared, kTicks);
+  EXPECT_EQ(same.last_ns - same.first_ns, (kTicks - 2) * kTick) << "it is counted on";
+}
+
+// Every tick counts, also those before the first one of the recording.
+TEST_F(BegunAnew, IsJudgedUpToItsEndWhateverTimeItBeginsWith) {
+  const auto files = record({.overwrite = false}, 300, kStart - 10'000 * kTick);
+  ASSERT_EQ(files.size(), 2u);
+  const OfflineReplay same =
+      replay_offline(cell, run, {.compare = Comparison::kBits, .continued_in = {files[1]}});
+  EXPECT_TRUE(same.ok()) << same.text();
+  EXPECT_EQ(same.compared, kTicks);
+  EXPECT_THAT(same.notes, testing::Contains(testing::HasSubstr("the time goes back")));
+  const OfflineReplay near = replay_offline(
+      cell, run, {.start_s = 0.45, .continued_in = {files[1]}, .expect_min_distance = 0.06});
+  ASSERT_EQ(near.failures.size(), 1u);
+  EXPECT_NEAR(near.failures[0].time_s, 0.499, 1e-9);
 }
 
 // What was before is not around an event.

@@ -133,6 +133,20 @@ TEST_F(BagReplay, StalenessShowsBetweenMessagesAsItDoesLive) {
   EXPECT_TRUE(only_samples.ok()) << only_samples.text();
 }
 
+// The recorder went on for two seconds in which nothing of the robot came.
+TEST_F(BagReplay, RunsToTheLastMessageAlsoIfNothingMovesInIt) {
+  std::vector<RosMessage> messages = motion(30, 10);
+  const std::int64_t end_ns = kStart + 30 * 10 * kMs + 2'000 * kMs;
+  for (std::int64_t t = kStart + 300 * kMs; t <= end_ns; t += 50 * kMs) {
+    messages.push_back(joint_state(t, t, {{"lid"}, {0.1}}));
+    messages.push_back(transforms(t, t, {{"world", "lid", {1, 0, 0}}}));
+  }
+  write_mcap_bag(folder / "bag.mcap", messages);
+  const OfflineReplay done = replay("bag.mcap", {.expect_min_distance = 0.01});
+  EXPECT_FALSE(done.ok());
+  EXPECT_GE(done.last_ns, end_ns - kMs);
+}
+
 TEST_F(BagReplay, OneBagInMcapInSqliteAndConvertedGivesTheSameBytesTwice) {
   write_mcap_bag(folder / "bag.mcap", motion(100, 7));
   write_sqlite_bag(folder / "bag.db3", motion(100, 7));

@@ -241,6 +241,36 @@ TEST_F(OfflineReplayTest, DaemonThatWasStartedAnewBeginsWithAMonitorThatKnowsNot
   EXPECT_THAT(result.notes, Contains(HasSubstr("started anew")));
 }
 
+// Partners publish one after the other. When the first one ends, the second one goes on, 1000 ticks
+// farther.
+TEST_F(OfflineReplayTest, OfTwoDaemonsInARecordingIsThatOfOneAtATime) {
+  record_run(cell, run, {.ticks = 400});
+  rewrite([](std::vector<Kept>& messages) {
+    std::vector<Kept> both;
+    std::uint64_t cycle = 0;
+    const auto add = [&](const Kept& message, std::uint64_t daemon, std::uint64_t of) {
+      both.push_back(altered<clearance_msg_Distances>(message, [=](auto& report) {
+        report.daemon = daemon;
+        report.cycle = of;
+      }));
+    };
+    for (const Kept& message : messages) {
+      if (message.kind != TopicKind::kDistances) {
+        both.push_back(message);
+        continue;
+      }
+      if (++cycle <= 200) add(message, 7, cycle);
+      add(message, 8, 1000 + cycle);
+    }
+    messages = std::move(both);
+  });
+  const OfflineReplay result = replay({.compare = Comparison::kBounds});
+  EXPECT_TRUE(result.ok()) << result.text();
+  EXPECT_EQ(result.ticks, 301u) << "200 of the first, and those from 100 ms after it";
+  EXPECT_THAT(result.notes, Contains(HasSubstr("299 reports are of a daemon that ran beside")));
+  EXPECT_THAT(result.notes, Contains(HasSubstr("another one goes on, 0.299")));
+}
+
 TEST_F(OfflineReplayTest, RecordingThatBeginsLateIsComparedInWhatIsCertain) {
   record_run(cell, run);
   rewrite([](std::vector<Kept>& messages) {

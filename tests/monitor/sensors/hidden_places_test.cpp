@@ -270,7 +270,8 @@ TEST_F(HiddenPlacesTest, OfBodiesThatAFrameDoesNotListHaveNoShell) {
     ASSERT_EQ(places.reports().size(), 4u);
     for (std::uint32_t listed = 0; listed < scene.objects.size(); ++listed) {
       SeenCloud cloud = SeenCloud::of_points(1);
-      cloud.hidden() = {{.object = listed, .shell = {.elements = 3, .thickness = 0.1}}};
+      cloud.hidden() = {
+          {.object = listed, .shell = {.elements = 3, .thickness = 0.1, .all = {}, .large = {}}}};
       places.take(1, cloud);
       for (const HiddenReport& each : places.reports()) EXPECT_EQ(each.thickness, kInfinity);
       places.take(0, cloud);

@@ -39,11 +39,12 @@ class OctomapsTest : public SensorsTest {
     sensors->add({.type = type, .topic = "/map", .sent_ns = sent_ns, .writer = 1, .cdr = cdr},
                  {.realtime_ns = sent_ns, .monotonic_ns = sent_ns});
   }
-  // The pair of the cart, a ball of 0.1 m at the origin.
-  PairReport cart(const std::vector<SensorFrame>& frames, std::int64_t now_ns) {
+  // The pair of the cart, a ball of 0.1 m.
+  PairReport cart(const std::vector<SensorFrame>& frames, std::int64_t now_ns,
+                  const Pose& at = {}) {
     Monitor monitor(cell.scene);
     for (const SensorFrame& frame : frames) EXPECT_TRUE(monitor.show(0, frame));
-    const Report& report = monitor.tick(std::vector{test::sample(0, {}, now_ns)}, now_ns);
+    const Report& report = monitor.tick(std::vector{test::sample(0, at, now_ns)}, now_ns);
     for (const PairReport& pair : report.pairs) {
       if (cell.scene.pairs[pair.pair].first == 0) return pair;
     }
@@ -81,6 +82,29 @@ TEST_F(OctomapsTest, FromBeforeTheFirstJointsHaveTheRobotAsAnObstacle) {
           kStart + 3 * kFrame);
   EXPECT_TRUE(settle(kStart + 4 * kFrame).empty());
   EXPECT_EQ(count(FrameFault::kNothingSeen), 1u) << "now it is known to be the arm";
+}
+
+// Eight small cubes of one kind are sent as a larger one, and so on. The upper arm touches one of
+// 0.8 m, from (0.2, 0.02, -0.1) on.
+TEST_F(OctomapsTest, HaveLargeCubesThatAreNotOnlyTheImageOfALinkThatTouchesThem) {
+  for (const std::string trusted : {"", ", trusted_shell: 0.9"}) {
+    make(kMap + trusted + ", mount: {pose: {xyz: [0.2, 0.02, -0.1]}}");
+    add_joints(0.0, kStart);
+    add_map(Type::kOctomap,
+            map_message(joined(one_cube({0, 0, 0}, 13), one_cube({60, 0, 0})), kStart), kStart);
+    const auto frames = settle(kStart + 1000);
+    ASSERT_EQ(frames.size(), 1u);
+    EXPECT_EQ(frames[0].cloud->size(), 1u) << "the other one is left out";
+    Pose at;
+    at.position = {0.6, 1.2, 0.3};
+    const PairReport pair = cart(frames, kStart + 1'000'000, at);
+    if (trusted.empty()) {
+      EXPECT_LE(pair.lower, 1.2 - 0.82 - 0.1);
+      EXPECT_NEAR(pair.lower, 1.2 - 0.82 - 0.1, 1e-6);
+    } else {
+      EXPECT_GT(pair.lower, 4.0) << "as the cell states";
+    }
+  }
 }
 
 TEST_F(OctomapsTest, ComeFromThePlanningScenesOfMoveIt) {

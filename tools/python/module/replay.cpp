@@ -331,7 +331,7 @@ void add_replay(py::module_& module) {
           "The first failure of each expectation: pair or zone, and figures.")
       .def_readonly("notes", &OfflineReplay::notes, "What a person should know, in sentences.")
       .def_readonly("damage", &OfflineReplay::damage,
-                    "Not empty: the recording was read up to a damage.")
+                    "Not empty: the recording was read up to a damaged place.")
       .def_readonly("ticks", &OfflineReplay::ticks, "The number of ticks.")
       .def_readonly("not_judged", &OfflineReplay::not_judged,
                     "The most ticks in which one expectation was not judged.")
