@@ -36,12 +36,12 @@ RecordedTicks::RecordedTicks(const std::filesystem::path& file)
 
 const RecordedTick* RecordedTicks::front() {
   if (front_) return &*front_;
-  if (!refusal_.empty() || !run_.next()) return nullptr;
+  if (!refusal_.empty()) return nullptr;
+  const bool has_next = run_.next();
   const clearance_msg_Distances& report = run_.report();
-  if (daemon_.value_or(report.daemon) != report.daemon) {
+  if (run_.of_others() > 0 || (has_next && daemon_.value_or(report.daemon) != report.daemon))
     refusal_ = "reports of more than one daemon are in it; expected a recording of one run";
-    return nullptr;
-  }
+  if (!has_next || !refusal_.empty()) return nullptr;
   daemon_ = report.daemon;
   while (run_.read_ahead()) {
   }
