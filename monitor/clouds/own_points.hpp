@@ -59,8 +59,7 @@ struct CentreLimit {
   double most = kInfinity;  // m, >= the shell: the points of the part itself are within this of it
   DepthError error;
   bool along_ray = false;  // depth is the distance from the sensor, not z
-  // An element of which more than this is measured, m, is large: a part that it touches is only
-  // some of what it may show.
+  // The size above which an element is large, m: besides the part, it may contain other bodies.
   double large = kInfinity;
   // An element is deep if all of it lies deeper in the part than this and the shell, m. NaN: no
   // element is sampled.

@@ -227,7 +227,8 @@ RosTransforms::State RosTransforms::follow(std::size_t follower, const std::stri
     return claims_.tree().link(of.frame) == nullptr ? State::kMissing : State::kCircle;
   }
   if (!place->is_of_one_time) return State::kApart;
-  if (has_lost_rival(of, now)) return State::kDisputed;
+  // A rival without a place gives no pose that could contradict.
+  if (!std::ranges::all_of(rivals_of(of, now), &Rival::has_place)) return State::kDisputed;
   if (from_ == TransformsFrom::kLog) roots_.insert(root);
   std::string suffix;
   for (const std::string& frame : claims_.disputed_on(of.frame)) {
@@ -250,28 +251,23 @@ std::optional<TfTree::Place> RosTransforms::find(const TrackedFrames::Follower& 
   return frames_.find(claims_.tree(), of.frame, root, &instead, earlier);
 }
 
-// A rival that leads nowhere gives no pose that could contradict.
-bool RosTransforms::has_lost_rival(const TrackedFrames::Follower& of, const Now& now) const {
+std::vector<RosTransforms::Rival> RosTransforms::rivals_of(const TrackedFrames::Follower& of,
+                                                           const Now& now) const {
+  std::vector<Rival> rivals;
   for (const std::string& frame : claims_.disputed_on(of.frame)) {
-    for (const TfFrames::Claim& rival : claims_.claims(frame).subspan(1)) {
-      if (!TfFrames::is_live(rival, now.monotonic_ns)) continue;
-      const auto place = find(of, &rival, nullptr, frame);
-      if (!place || !place->is_of_one_time) return true;
+    for (const TfFrames::Claim& claim : claims_.claims(frame).subspan(1)) {
+      if (!TfFrames::is_live(claim, now.monotonic_ns)) continue;
+      rivals.push_back({frame, claim.suffix, find(of, &claim, nullptr, frame)});
     }
   }
-  return false;
+  return rivals;
 }
 
 void RosTransforms::follow_rivals(std::size_t follower, const std::string& source, const Now& now) {
-  const TrackedFrames::Follower& of = frames_.followers()[follower];
-  for (const std::string& frame : claims_.disputed_on(of.frame)) {
-    for (const TfFrames::Claim& rival : claims_.claims(frame).subspan(1)) {
-      if (!TfFrames::is_live(rival, now.monotonic_ns)) continue;
-      const auto place = find(of, &rival, nullptr, frame);
-      if (!place || !place->is_of_one_time) continue;
-      add(follower, *place, source + rival.suffix, by_rivals_[{follower, frame, rival.suffix}],
-          now);
-    }
+  for (const Rival& rival : rivals_of(frames_.followers()[follower], now)) {
+    if (!rival.has_place()) continue;
+    add(follower, *rival.place, source + rival.suffix,
+        by_rivals_[{follower, rival.frame, rival.suffix}], now);
   }
 }
 
@@ -315,7 +311,7 @@ std::string RosTransforms::what_is_wrong(const TrackedFrames::Follower& follower
     case State::kApart:
       return "whose path has transforms of times too far apart";
     case State::kDisputed:
-      return "which another program sends as well, to a parent that does not lead to the world";
+      return "which another program sends as well, and by that one it has no place";
     case State::kElsewhere: {
       std::string root;
       static_cast<void>(frames_.find(claims_.tree(), follower.frame, &root));

@@ -62,6 +62,12 @@ class RosTransforms final : public Decoder {
     std::int64_t stamp_ns = 0;
     std::int64_t at_ns = 0;  // monotonic
   };
+  // A live rival's claim of a frame on the path of a follower, and the place by it.
+  struct Rival {
+    std::string frame, suffix;
+    std::optional<TfTree::Place> place;
+    [[nodiscard]] bool has_place() const noexcept { return place && place->is_of_one_time; }
+  };
   // A rival's claim of a frame on the path of a follower: follower, frame, suffix of the claim.
   using RivalPath = std::tuple<std::size_t, std::string, std::string>;
   struct Following {
@@ -95,7 +101,8 @@ class RosTransforms final : public Decoder {
   [[nodiscard]] std::optional<TfTree::Place> find(const TrackedFrames::Follower& of,
                                                   const TfFrames::Claim* rival, std::string* root,
                                                   const std::string& at = {}) const;
-  [[nodiscard]] bool has_lost_rival(const TrackedFrames::Follower& of, const Now& now) const;
+  [[nodiscard]] std::vector<Rival> rivals_of(const TrackedFrames::Follower& of,
+                                             const Now& now) const;
   void note(std::size_t follower, State state, const Now& now);
   [[nodiscard]] std::string what_is_wrong(const TrackedFrames::Follower& follower,
                                           State state) const;

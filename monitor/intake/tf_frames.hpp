@@ -113,7 +113,7 @@ class TfFrames {
   // errors enclose its motion within.
   [[nodiscard]] static std::optional<Step> step(const Claim& claim, std::int64_t stamp_ns,
                                                 std::int64_t within_ns = 0);
-  // Where the claim has its frame in that parent at that time; nothing: not known.
+  // Returns the pose of the claim's frame in that parent at that time; nothing: not known.
   [[nodiscard]] static std::optional<Pose> pose_in(const std::string& parent, const Claim& claim,
                                                    std::int64_t stamp_ns);
   // Appends the stamps of the transforms from the first time to the last one, and those of the two

@@ -46,7 +46,8 @@ class TfTree {
     const Link& link;
   };
 
-  // Where a child was in its parent at a time before the stamp of its link. Nothing: not known.
+  // Returns the pose of a child in its parent at a time before the stamp of its link; nothing: not
+  // known.
   using Earlier =
       std::function<std::optional<Pose>(const std::string& child, const Link&, std::int64_t)>;
 

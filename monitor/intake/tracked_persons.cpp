@@ -29,14 +29,15 @@ bool has_a_joint_of(const std::string& body, const Robot& person, const Scene& s
   });
 }
 
-struct Given {
+struct Assignment {
   std::vector<State> states;  // by person
-  bool has_all = true;        // each body has a person
+  bool is_complete = true;    // each body has a person
 };
 
 // A body keeps its person, so that what is known of it stays.
-Given give(std::vector<std::string> bodies, std::span<const Robot*> persons, const Scene& scene) {
-  Given result{.states = std::vector<State>(persons.size())};
+Assignment assign(std::vector<std::string> bodies, std::span<const Robot*> persons,
+                  const Scene& scene) {
+  Assignment result{.states = std::vector<State>(persons.size())};
   std::vector<State>& states = result.states;
   std::vector<std::size_t> free;
   for (std::size_t i = 0; i < persons.size(); ++i) {
@@ -58,7 +59,7 @@ Given give(std::vector<std::string> bodies, std::span<const Robot*> persons, con
   std::size_t given = 0;
   for (const std::string& body : bodies) {
     if (given == free.size() || !is_body_id(body) || is_taken(body, *persons[free[given]])) {
-      result.has_all = false;
+      result.is_complete = false;
     } else {
       states[free[given++]] = body;
     }
@@ -69,11 +70,11 @@ Given give(std::vector<std::string> bodies, std::span<const Robot*> persons, con
 // If a body has no person, the last one is unknown for it, and is no other body's.
 std::vector<State> states_by(const std::vector<std::string>& bodies,
                              std::span<const Robot*> persons, const Scene& scene) {
-  Given given = give(bodies, persons, scene);
-  if (given.has_all) return std::move(given.states);
-  given = give(bodies, persons.first(persons.size() - 1), scene);
-  given.states.emplace_back("");
-  return std::move(given.states);
+  Assignment of_all = assign(bodies, persons, scene);
+  if (of_all.is_complete) return std::move(of_all.states);
+  Assignment of_others = assign(bodies, persons.first(persons.size() - 1), scene);
+  of_others.states.emplace_back("");
+  return std::move(of_others.states);
 }
 
 }  // namespace
