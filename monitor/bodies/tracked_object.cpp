@@ -45,10 +45,6 @@ bool is_zero(const Twist& twist) noexcept {
   return twist.linear == Vec3::Zero() && twist.angular == Vec3::Zero();
 }
 
-bool usable(const Pose& pose) noexcept {
-  return pose.position.cwiseAbs().maxCoeff() <= kLargestCoordinate && is_unit(pose.orientation);
-}
-
 // The sample is not a pose at all, whichever source sent it.
 std::optional<Reject> malformed(const PoseSample& sample) noexcept {
   if (!usable(sample)) return Reject::kNonFinite;
@@ -129,6 +125,11 @@ void PoseCandidate::rest_from_now() noexcept {
 
 }  // namespace
 
+// The greatest coefficient would say nothing: it passes over NaN.
+bool is_usable(const Pose& pose) noexcept {
+  return (pose.position.array().abs() <= kLargestCoordinate).all() && is_unit(pose.orientation);
+}
+
 bool TrackedObject::is_sound(const TrackedObject& own) const noexcept {
   const bool flags =
       are_flags(moved, newly_known, discontinuous, plain, absent, rest.holds, rest.has_twist) &&
@@ -140,7 +141,7 @@ bool TrackedObject::is_sound(const TrackedObject& own) const noexcept {
                       accumulated < kInfinity && bend >= 0.0 && accumulated_turn >= 0.0 &&
                       accumulated_turn < kInfinity && unobserved_by_joints >= 0.0 &&
                       motion.shift >= 0.0 && motion.turn >= 0.0;
-  const bool values = usable(pose) && usable(pose_last_tick) && usable(pose_before) &&
+  const bool values = is_usable(pose) && is_usable(pose_last_tick) && is_usable(pose_before) &&
                       twist.linear.allFinite() && twist.angular.allFinite();
   const bool is_where_it_is = own.input.ages || same_pose(pose, own.pose);
   const bool is_there = !absent || (own.input.ages && !input.has_value);

@@ -104,6 +104,9 @@ struct alignas(64) TrackedObject {
   }
 };
 
+// True if distance queries accept the pose (core/pose.hpp).
+[[nodiscard]] bool is_usable(const Pose& pose) noexcept;
+
 // The state before any input: a fixed object is at its pose in the scene.
 [[nodiscard]] TrackedObject initial_state(const Object& object);
 

@@ -83,7 +83,7 @@ CloudBuild PointCloud::build(std::span<const MeasuredPoint> points, const CloudC
                              ElementShape shape) noexcept {
   // The negated comparisons refuse NaN.
   if (!(crop.radius >= 0.0) ||
-      !(crop.centre.cwiseAbs().maxCoeff() + crop.radius <= kLargestCloudCoordinate)) {
+      !(crop.centre.array().abs() + crop.radius <= kLargestCloudCoordinate).all()) {
     return CloudBuild::kBadCrop;
   }
   std::size_t kept = 0, missing = 0, cropped = 0;

@@ -145,7 +145,7 @@ bool Sensors::has_room(std::uint32_t sensor, const IsUsed& is_used) const {
 
 bool Sensors::rebuild(const BuiltFrame& built, const IsUsed& is_used, const Use& use) {
   if (built.scene_revision != cell_.scene.revision || built.sensor >= states_.size() ||
-      !has(cell_.scene, built.carrier)) {
+      !has(cell_.scene, built.carrier) || !built.place.known || !built.place.is_sound()) {
     return false;
   }
   State& state = *states_[built.sensor];

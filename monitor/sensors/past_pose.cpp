@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "monitor/bodies/directed_rounding.hpp"
+#include "monitor/bodies/tracked_object.hpp"
 
 namespace clearance {
 namespace {
@@ -23,6 +24,10 @@ double excess(double time_s, double speed, double mean) noexcept {
 
 double PastPose::error(double radius) const noexcept {
   return rounded_up(shift_error + turn_error * radius);
+}
+
+bool PastPose::is_sound() const noexcept {
+  return !known || (is_usable(world_from_body) && shift_error >= 0.0 && turn_error >= 0.0);
 }
 
 PastPose carried(const PastPose& parent, const Pose& parent_from_child, double shift_error,

@@ -15,6 +15,8 @@ struct PastPose {
   double shift_error = 0.0, turn_error = 0.0;  // m; |R - R_exact|
 
   [[nodiscard]] double error(double radius) const noexcept;
+  // False for what no frame is built of: a known pose that is no pose, or errors below 0.
+  [[nodiscard]] bool is_sound() const noexcept;
 };
 
 // The place of what a body carries at this pose, which is off by the two errors (m, rad). Rounding

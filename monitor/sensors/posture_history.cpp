@@ -223,6 +223,12 @@ void PostureHistory::place(std::int64_t stamp_ns, std::int64_t within_ns) {
 bool PostureHistory::place(const PlacedPostures& placed) {
   if (placed.joints.size() != variables_.size() || placed.objects.size() != objects_.size())
     return false;
+  const auto is_sound = [](const PlacedPostures::Joint& joint) {
+    return !joint.known || (std::isfinite(joint.position) && joint.may_have_moved >= 0.0);
+  };
+  if (!std::ranges::all_of(placed.joints, is_sound) ||
+      !std::ranges::all_of(placed.objects, &PastPose::is_sound))
+    return false;
   for (std::size_t i = 0; i < variables_.size(); ++i) {
     variables_[i].input.has_value = placed.joints[i].known;
     variables_[i].position = placed.joints[i].position;

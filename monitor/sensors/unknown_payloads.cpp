@@ -127,7 +127,7 @@ void UnknownPayloads::fill(Hand& hand, const DepthCloud& cloud, const PastPose& 
       if (block.low[lane] > block.high[lane]) continue;
       const Vec3 in_camera = cloud.pixel_slab(i, lane).middle();
       const Vec3 in_grid = grid_from_camera.rotation * in_camera + grid_from_camera.translation;
-      if (in_grid.cwiseAbs().maxCoeff() < PayloadGrid::kHalf) {
+      if ((in_grid.array().abs() < PayloadGrid::kHalf).all()) {
         const Vec3 in_world = transform(world_from_grid, in_grid);
         const bool came = std::ranges::any_of(hand.before, [&](const TileDepths& each) {
           return each.at(in_world, PayloadGrid::kCell) == TileDepths::Sight::kFree;

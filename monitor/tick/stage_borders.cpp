@@ -8,11 +8,6 @@ namespace {
 
 bool costly = kMoreInvariantsChecked;
 
-// True if distance queries accept the pose (core/pose.hpp).
-bool is_usable(const Pose& pose) noexcept {
-  return pose.position.allFinite() && is_unit(pose.orientation);
-}
-
 void check_object(const TrackedObject& object) noexcept {
   CLEARANCE_INVARIANT(!object.absent || !object.input.has_value);
   if (!object.input.has_value) return;

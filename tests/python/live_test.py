@@ -231,12 +231,14 @@ def test_a_writer_has_each_joint_and_each_object_once(daemon):
 
 def test_a_daemon_that_ends_is_noticed(daemon):
     with clearance.Reports(daemon.connection()) as reports:
-        assert reports.next(LIMIT_S) is not None
+        eventually(lambda: reports.next(0.1), lambda _: not reports.fail_safe)
+        assert reports.reason == clearance.ReportError.GOOD and not reports.is_held
         daemon.end()
         end = time.monotonic() + LIMIT_S
         while not reports.has_ended and time.monotonic() < end:
             reports.next(0.05)
-        assert reports.has_ended
+        assert reports.has_ended and reports.fail_safe
+        assert reports.reason != clearance.ReportError.GOOD and not reports.is_held
 
 
 def test_two_partners_are_one_stream_that_says_when_one_is_missing(run_daemon, planar_file):

@@ -10,7 +10,7 @@ sys.dont_write_bytecode = True
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(sys.argv.pop(1)).resolve()
 sys.path.insert(0, str(ROOT / "tools/evidence_parts"))
-import fmea, matrix, sbom
+import fmea, matrix, outcome, sbom, surroundings
 
 GOOD = {
     "promises": [{"id": "P1", "text": "Distances of points are right.", "tests": ["Distance.OfPointsIsEuclid"]}],
@@ -74,6 +74,42 @@ class Evidence(unittest.TestCase):
             wanted.write_text(yaml.safe_dump({"promises": [{"id": "P1", "text": "All.", "tests": tests}]}))
             faults = matrix.judge(wanted, build, build)["faults"]
         self.assertEqual(faults, ["P1: Some.Fails: failed", "P1: Some.Skips: skipped", "P1: Some.Ends: not run"])
+
+    def test_TakesInALongRunOfThisCommitAlone(self):
+        with tempfile.TemporaryDirectory() as folder:
+            root = pathlib.Path(folder)
+            file = root / "file"
+
+            def commit(text):
+                file.write_text(text)
+                for command in (["init", "-q"], ["add", "file"], ["-c", "user.name=a", "-c", "user.email=a@b", "commit", "-qm", text]):
+                    outcome.git(root, *command)
+
+            commit("one")
+            self.assertEqual(outcome.read(root, "soak"), {"outcome": "not run (tools/soak)", "faults": []})
+            outcome.write(root, "soak", "9 faults", ["a leak"], rooms={"core": 1})
+            self.assertEqual([outcome.read(root, "soak")[key] for key in ("outcome", "faults", "rooms")], ["9 faults", ["a leak"], {"core": 1}])
+            first = outcome.git(root, "rev-parse", "HEAD")[:12]
+            commit("two")
+            self.assertEqual(outcome.read(root, "soak"),
+                             {"outcome": f"not run on this commit; on {first} it was: 9 faults", "faults": []})
+            file.write_text("three")
+            outcome.write(root, "soak", "no fault", [])
+            self.assertIn(", changed it was: no fault", outcome.read(root, "soak")["outcome"])
+
+    def test_FailsForProgramsOfAnotherCommitForChangedFilesAndForFaultsOfALongRun(self):
+        good = {"commit": "0123456789abcdef", "changed_files": [], "built": "clearance 1, 0123456789ab, GNU, Release",
+                "long_runs": {"coverage": {"outcome": "no fault", "faults": []}}}
+        self.assertEqual(list(surroundings.faults(good)), [])
+        for change, expected in [
+            ({"changed_files": [" M core/vec.hpp"]}, "1 files are changed beside the commit"),
+            ({"built": "clearance 1, 0123456789ab with changes, GNU"}, "the programs are not built from the commit"),
+            ({"built": "clearance 1, ba9876543210, GNU, Release"}, "the programs are not built from the commit"),
+            ({"built": ""}, "the programs are not built from the commit"),
+            ({"long_runs": {"soak": {"outcome": "one", "faults": ["a leak"]}}}, "soak: a leak"),
+        ]:
+            with self.subTest(expected):
+                self.assertTrue(next(surroundings.faults({**good, **change})).startswith(expected))
 
     def test_JoinsTimesWithTheRowThatTellsThem(self):
         page = """## Stops

@@ -57,7 +57,7 @@ def fmea(evidence):
 def coverage(evidence):
     return "".join(row(cell(room), *(cell(f"{of[kind]} % of {of[kind + '_of']}; at least {of['at_least'][kind]} %")
                                      for kind in ("branches", "mcdc")))
-                   for room, of in evidence["coverage"].get("rooms", {}).items())
+                   for room, of in evidence["long_runs"]["coverage"].get("rooms", {}).items())
 
 
 def libraries(evidence):
@@ -74,14 +74,15 @@ def of(evidence):
     return f"""<!doctype html><html lang="en"><meta charset="utf-8"><title>Clearance: evidence</title><style>{STYLE}</style>
 <h1>Clearance: evidence</h1><p><b>{escape(evidence['statement'])}</b> How to read it: tools/EVIDENCE.md.</p>
 <h2>Faults of this run</h2><ul>{faults}</ul>
-<h2>What was run</h2><table>{facts({'commit': commit, 'time': evidence['time'], **evidence['machine']})}
-{facts(evidence['build'])}{facts({'commands (whole in evidence.json)': commands, 'static analysis': evidence['static_analysis']['outcome'],
-                                  'coverage': evidence['coverage']['outcome'], 'not run': evidence['not_run']})}</table>
+<h2>What was run</h2><table>{facts({'commit': commit, 'built': evidence['built'], 'time': evidence['time'], 'minutes': evidence['minutes'], **evidence['machine']})}
+{facts(evidence['build'])}{facts({'commands (whole in evidence.json)': commands, 'random cases': evidence['random_cases']})}
+{facts({name: run['outcome'] for name, run in evidence['long_runs'].items()})}{facts({'not run': evidence['not_run']})}</table>
 <h2>Promises</h2><table><tr><th>id<th>promise<th>tests in this run</tr>{promises(evidence)}</table>
 <h2>Assumptions of use</h2><table><tr><th>id<th>assumption<th>what detects a breach<th>tests in this run</tr>
 {assumptions(evidence)}</table>
 <h2>Faults: cause, effect, detection, reaction</h2><p>The rows are those of monitor/FAULTS.md. Times are ticks of 1 ms from
-the beginning of a fault until it is told, median / longest of so many runs of the campaign of inputs that lie, by kind.</p>
+the beginning of a fault until it is told, median / longest of so many runs of the campaign of inputs that lie, by kind.
+A row without an effect has the one that its section begins with.</p>
 <table><tr><th>section<th>cause<th>effect<th>detection<th>time until detected<th>reaction<th>tests</tr>{fmea(evidence)}</table>
 <h2>Coverage</h2><table><tr><th>room<th>branches<th>MC/DC</tr>{coverage(evidence)}</table>
 <h2>Libraries</h2><p>The same list as SPDX: sbom.spdx.json.</p>

@@ -1,5 +1,7 @@
 """What a run of tests stands on: the commit, the machine, the build, and what was not run."""
-import datetime, json, os, pathlib, platform, re, subprocess
+import datetime, os, pathlib, platform, re, subprocess
+
+import outcome
 
 
 def output(*command, cwd=None):
@@ -11,23 +13,14 @@ def setting(build, name):
     return found.group(1) if found else "not stated"
 
 
-def outcome(root, name):
-    """What tools/analyse or tools/coverage found, if it ran on this commit."""
-    file = root / "build" / name / "outcome.json"
-    if not file.exists():
-        return {"outcome": "not run"}
-    found = json.loads(file.read_text())
-    return found if found["commit"] == output("git", "rev-parse", "HEAD", cwd=root) else {
-        "outcome": f"not run on this commit; on {found['commit'][:12]} it was: {found['outcome']}"}
-
-
 def of(root, build):
     processor = re.search(r"model name\s*: (.*)", pathlib.Path("/proc/cpuinfo").read_text())
     release = re.search(r'PRETTY_NAME="(.*)"', pathlib.Path("/etc/os-release").read_text())
     return {
         "statement": "Clearance is not certified. This page shows what was run, and nothing beyond it.",
-        "commit": output("git", "rev-parse", "HEAD", cwd=root),
-        "changed_files": output("git", "status", "--porcelain", cwd=root).splitlines(),
+        "commit": outcome.git(root, "rev-parse", "HEAD"),
+        "changed_files": outcome.git(root, "status", "--porcelain").splitlines(),
+        "built": output(build / "bin/clearanced", "--version"),
         "time": datetime.datetime.now(datetime.timezone.utc).isoformat(timespec="seconds"),
         "machine": {"processor": processor.group(1) if processor else platform.processor(),
                     "processors": os.cpu_count(), "kernel": platform.release(),
@@ -35,8 +28,19 @@ def of(root, build):
         "build": {"type": setting(build, "CMAKE_BUILD_TYPE"), "flags": setting(build, "CMAKE_CXX_FLAGS"),
                   "sanitize": setting(build, "CLEARANCE_SANITIZE"),
                   "compiler": output(setting(build, "CMAKE_CXX_COMPILER"), "--version").splitlines()[:1]},
-        "static_analysis": outcome(root, "analysis"),
-        "coverage": outcome(root, "coverage"),
+        "random_cases": "all" if "CLEARANCE_ALL_REPEATS" in os.environ else
+                        "a share, as in tools/check (with CLEARANCE_ALL_REPEATS=1: all)",
+        "long_runs": {name: outcome.read(root, name) for name in outcome.LONG_RUNS},
         "not_run": ["tests that the matrix does not name (tools/check runs all)",
-                    "sanitizers and campaigns (tools/check --all)", "slips (tests/mutants/run)"],
+                    "sanitizers, fuzzers and campaigns (tools/check --all)"],
     }
+
+
+def faults(found):
+    """What keeps the page from being evidence of its commit, and what its long runs have found."""
+    if found["changed_files"]:
+        yield f"{len(found['changed_files'])} files are changed beside the commit"
+    if f", {found['commit'][:12]}," not in found["built"]:
+        yield f"the programs are not built from the commit: {found['built']}"
+    for name, run in found["long_runs"].items():
+        yield from (f"{name}: {fault}" for fault in run["faults"])

@@ -154,7 +154,7 @@ class Run:
         self.heard_ns, self.last = time.time_ns(), report
         if report.partner != "agrees":
             self.apart_ns = self.heard_ns
-        if len(report.pairs) and report.pairs["status"].max() < judge.STALE:
+        if len(report.pairs) and report.pairs["status"].max() < judge.STALE and report.minimum_certified:
             self.alive_ns = report.now_ns
         scene = self.judge and self.judge.scenes.get(report.scene_revision)
         rows = scene.rows_of(report) if scene else None

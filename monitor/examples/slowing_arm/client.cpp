@@ -20,7 +20,7 @@ int main(int argc, char** argv) {
   double phase = 0.0;
   for (int heard = 0; now_ns() < end_ns;) {
     arm.write({{-0.6, 0.6 * std::sin(phase), 0.0, -0.2, 0.0, 0.5, 0.0, 0.02}});
-    if (!reports.newest(std::chrono::milliseconds(10)) || !reports.check().fresh()) continue;
+    if (!reports.newest(std::chrono::milliseconds(10)) || reports.fail_safe()) continue;
     const auto* hand = hand_and_post.in(*reports);
     if (hand == nullptr) continue;
     phase += 1e-3 * std::clamp(5.0 * hand->lower, 0.0, 1.0);  // -infinity while not known

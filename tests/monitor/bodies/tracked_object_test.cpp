@@ -220,5 +220,21 @@ TEST(TrackedObject, AgesOfExtremeStampsDoNotOverflow) {
   EXPECT_EQ(state.input.age_ns(kEarliest), 0);
 }
 
+TEST(TrackedObjectState, HasNoPoseThatQueriesRefuse) {
+  EXPECT_TRUE(is_usable(Pose{}));
+  for (const double value : {kNoNumber, std::numeric_limits<double>::infinity(), -1e300}) {
+    for (int axis = 0; axis < 3; ++axis) {
+      Pose pose;
+      pose.position[axis] = value;
+      EXPECT_FALSE(is_usable(pose)) << axis << ": " << value;
+    }
+    for (int number = 0; number < 4; ++number) {
+      Pose pose;
+      pose.orientation.coeffs()[number] = value;
+      EXPECT_FALSE(is_usable(pose)) << number << ": " << value;
+    }
+  }
+}
+
 }  // namespace
 }  // namespace clearance

@@ -292,6 +292,8 @@ TEST(PointCloud, RefusesWhatItCannotHoldAndKeepsTheFormerPoints) {
   EXPECT_EQ(refused({{2, 0, 0, 0}}, {Vec3::Zero(), kInfinity}), CloudBuild::kBadCrop);
   EXPECT_EQ(refused({{2, 0, 0, 0}}, {Vec3::Zero(), -1.0}), CloudBuild::kBadCrop);
   EXPECT_EQ(refused({{2, 0, 0, 0}}, {Vec3(kNan, 0, 0), 1.0}), CloudBuild::kBadCrop);
+  EXPECT_EQ(refused({{2, 0, 0, 0}}, {Vec3(0, kNan, 0), 1.0}), CloudBuild::kBadCrop);
+  EXPECT_EQ(refused({{2, 0, 0, 0}}, {Vec3(0, 0, kNan), 1.0}), CloudBuild::kBadCrop);
   EXPECT_EQ(refused({{2, 0, 0, 0}}, {Vec3(1e7, 0, 0), 1.0}), CloudBuild::kBadCrop);
 }
 

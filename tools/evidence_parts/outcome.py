@@ -1,0 +1,31 @@
+"""Outcomes of long runs in build/NAME/outcome.json: each names the commit and what was changed beside it."""
+import json, subprocess
+
+# What a pack of evidence takes in, by its name: the program that runs it.
+LONG_RUNS = {"analysis": "tools/analyse", "coverage": "tools/coverage", "mutants": "tests/mutants/run", "soak": "tools/soak",
+             "reproducible": "tests/tools/packages/reproducible"}
+
+
+def git(root, *command):
+    return subprocess.run(["git", *command], cwd=root, capture_output=True, text=True, check=False).stdout.strip()
+
+
+def write(root, name, outcome, faults, **more):
+    """`outcome`: a line for a person. `faults`: what speaks against the commit, a line each."""
+    file = root / "build" / name / "outcome.json"
+    file.parent.mkdir(parents=True, exist_ok=True)
+    is_changed = git(root, "status", "--porcelain", "--untracked-files=no") != ""
+    file.write_text(json.dumps({"commit": git(root, "rev-parse", "HEAD"), "is_changed": is_changed, "outcome": outcome,
+                                "faults": faults, **more}, indent=1) + "\n")
+
+
+def read(root, name):
+    """The same, if it is of this commit. Of another one, or of a changed tree, it has neither faults nor figures."""
+    file = root / "build" / name / "outcome.json"
+    if not file.exists():
+        return {"outcome": f"not run ({LONG_RUNS[name]})", "faults": []}
+    found = json.loads(file.read_text())
+    if found["commit"] == git(root, "rev-parse", "HEAD") and not found["is_changed"]:
+        return found
+    where = found["commit"][:12] + (", changed" if found["is_changed"] else "")
+    return {"outcome": f"not run on this commit; on {where} it was: {found['outcome']}", "faults": []}
