@@ -85,7 +85,8 @@ class TwoPartners {
 TEST(EveryJoin, OfThreeEventsEndsInPartnersThatAgreeAndNeverHasTwoContentsOfACycle) {
   test::EveryChoice choice;
   int longest = 0;
-  while (choice.next()) {
+  std::uint64_t runs = 0;
+  for (; choice.next(); ++runs) {
     TwoPartners partners;
     if (choice.flag()) partners.begin_with_a_leader();
     std::string order;
@@ -106,6 +107,9 @@ TEST(EveryJoin, OfThreeEventsEndsInPartnersThatAgreeAndNeverHasTwoContentsOfACyc
     ASSERT_FALSE(testing::Test::HasFailure()) << order;
   }
   EXPECT_GT(longest, 10) << "they have to join first";
+  std::uint64_t all = 2;  // with a leader or without
+  for (int i = 0; i < kJoinEvents; ++i) all *= std::size(kEventNames);
+  EXPECT_EQ(runs, all);
 }
 
 }  // namespace

@@ -91,13 +91,14 @@ class FlippedConstants : public testing::TestWithParam<const char*> {};
 
 INSTANTIATE_TEST_SUITE_P(SelfTests, FlippedConstants,
                          testing::Values("two_arms.yaml", "seven_joint_arms.yaml", "stops.yaml",
-                                         "errors.yaml"));
+                                         "errors.yaml", "camera.yaml", "people.yaml",
+                                         "tools.yaml"));
 
 // Every byte of every block is as likely as any other.
 TEST_P(FlippedConstants, AreFoundWithinTheNumberOfTicksThatIsToldAndNamed) {
   MovingCell moving(GetParam());
   const char* const asked = std::getenv("CLEARANCE_FLIPS");
-  const int flips = (asked == nullptr ? static_cast<int>(repeats(10'000)) : std::atoi(asked)) / 4;
+  const int flips = (asked == nullptr ? static_cast<int>(repeats(10'000)) : std::atoi(asked)) / 6;
   Random random(63);
   const auto blocks = moving.tick().memory().blocks();
   const std::size_t bytes = moving.tick().bytes();
@@ -142,7 +143,9 @@ TEST_P(FlippedConstants, AreNotFoundWhereNoneIs) {
   const std::uint64_t pass = moving.tick().ticks();
   for (std::uint64_t i = 0; i < 3 * pass; ++i) ASSERT_FALSE(moving.tick().failed()) << i;
   EXPECT_TRUE(moving.tick().holds());
-  EXPECT_LT(moving.report->unknown, moving.report->pairs_total) << "the inputs are used";
+  const bool has_persons = GetParam() == std::string("people.yaml");  // a tracker lists them
+  EXPECT_TRUE(has_persons || moving.report->unknown < moving.report->pairs_total)
+      << "the inputs are used";
 }
 
 // A copy allocates exactly what the scene holds outside of itself, in grains of 16 bytes. Between
