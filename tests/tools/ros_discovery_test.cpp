@@ -111,6 +111,13 @@ TEST_F(RosDiscoveryNetwork, WhereRosIsSetUpTheDaemonMeetsEveryNodeOfItsMachine) 
       << daemon->output();
 }
 
+TEST_F(RosDiscoveryNetwork, BesideHumbleTheDaemonMeetsNodesAndSaysThatItIsNone) {
+  start({{"ROS_DISTRO", "humble"}});
+  EXPECT_TRUE(hears(here, kHumbleLocalhost)) << daemon->output();
+  EXPECT_TRUE(daemon->told("how-to-reach", {"not a node of ROS 2: ROS_DISTRO is humble, "}))
+      << daemon->output();
+}
+
 TEST_F(RosDiscoveryNetwork, TheVariablesForThisMachineMeanWhatTheyMeanForNodes) {
   for (const Variables& variables : {Variables{{"ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST"}},
                                      Variables{{"ROS_LOCALHOST_ONLY", "1"}}}) {
