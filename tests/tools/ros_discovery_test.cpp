@@ -107,7 +107,7 @@ TEST_F(RosDiscoveryNetwork, WhereRosIsSetUpTheDaemonMeetsEveryNodeOfItsMachine) 
     EXPECT_TRUE(hears(here, node)) << node << '\n' << daemon->output();
   EXPECT_TRUE(hears(there, kSubnet)) << daemon->output();
   EXPECT_TRUE(hears(here, domain_configuration({.interface = "lo"}))) << "a client elsewhere on lo";
-  EXPECT_TRUE(daemon->told("how-to-reach", {"every ROS 2 node of this machine"}))
+  EXPECT_TRUE(daemon->told("how-to-reach", {"every ROS 2 node of this machine on rmw_cyclonedds"}))
       << daemon->output();
 }
 
@@ -158,6 +158,8 @@ TEST_F(RosDiscoveryNetwork, TheProposedSettingsReachADaemonOnLoopback) {
   for (const std::string& node : {kSubnet, kLocalhost, kHumble})
     EXPECT_TRUE(hears(here, node + "," + proposed())) << proposed();
   EXPECT_TRUE(hears(here, kHumbleLocalhost)) << "without them, as with them the node ends";
+  EXPECT_TRUE(daemon->told("how-to-reach", {"Humble with ROS_LOCALHOST_ONLY=1 reach it without"}))
+      << daemon->output();
 }
 
 TEST_F(RosDiscoveryNetwork, CyclonesOwnVariableMayNameTheCardOfRos) {
