@@ -1,6 +1,7 @@
 #include "monitor/dds/ros_readers.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "monitor/app/log_line.hpp"
 
@@ -17,7 +18,8 @@ void RosReaders::stand() {
   has_new_names_ = true;
   for (const NamedTopic& named : intake_.named()) {
     const std::string topic = ros_dds_name(named.name);
-    const auto [place, is_new] = standing_.try_emplace({topic, named.delivery->descriptor}, 0);
+    const auto [place, is_new] =
+        standing_.try_emplace({topic, named.delivery->descriptor, named.delivery->is_latched}, 0);
     try {
       if (is_new) place->second = participant_.ros_reader(*named.delivery, topic);
     } catch (const DdsError& error) {
@@ -26,10 +28,21 @@ void RosReaders::stand() {
   }
 }
 
+// Readers for another type or delivery of the topic stand no more: ROS 2's tools refuse a topic of
+// two types.
 dds_entity_t RosReaders::reader_of(const RosType& delivery, const std::string& topic) {
-  if (delivery.is_latched) return participant_.ros_reader(delivery, topic);
-  dds_entity_t& standing = standing_[{topic, delivery.descriptor}];
-  return standing > 0 ? std::exchange(standing, 0) : participant_.ros_reader(delivery, topic);
+  const Standing wanted{topic, delivery.descriptor, delivery.is_latched};
+  dds_entity_t reader = 0;
+  for (auto& [standing, handle] : standing_) {
+    if (handle <= 0 || std::get<0>(standing) != topic) continue;
+    const dds_entity_t stood = std::exchange(handle, 0);
+    if (standing == wanted) {
+      reader = stood;
+    } else {
+      dds_delete(stood);
+    }
+  }
+  return reader > 0 ? reader : participant_.ros_reader(delivery, topic);
 }
 
 bool RosReaders::poll() {

@@ -6,7 +6,7 @@
 #include <functional>
 #include <map>
 #include <string>
-#include <utility>
+#include <tuple>
 #include <vector>
 
 #include "monitor/dds/present_topics.hpp"
@@ -48,6 +48,9 @@ class RosReaders {
   void take(const Reader& reader, const Now& now, std::vector<CdrSample>& taken);
 
  private:
+  // Topic, type, and whether it is for writers that keep their samples.
+  using Standing = std::tuple<std::string, const dds_topic_descriptor_t*, bool>;
+
   [[nodiscard]] dds_entity_t reader_of(const RosType& delivery, const std::string& topic);
   [[nodiscard]] bool is_read_by_other(const Reader& reader, std::uint64_t writer) const;
 
@@ -56,8 +59,8 @@ class RosReaders {
   PresentTopics present_;
   std::vector<Reader> readers_;
   bool has_new_names_ = false;  // the cell may name a topic that was there before
-  // Readers of stand() that no writer needed yet, by topic and type; 0: it has one of readers_.
-  std::map<std::pair<std::string, const dds_topic_descriptor_t*>, dds_entity_t> standing_;
+  // Readers of stand() that no writer needed yet; 0: the topic has one of readers_.
+  std::map<Standing, dds_entity_t> standing_;
 };
 
 // The same for any reader. Samples of a writer that does not count are dropped; empty: all count.

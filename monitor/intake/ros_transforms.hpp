@@ -41,6 +41,9 @@ class RosTransforms final : public Decoder {
   RosTransforms(const Cell& cell, TransformsFrom from, Outlet& out, UseSensorMessage use = {});
 
   [[nodiscard]] std::optional<Wanted> wants(const TopicName& topic) override;
+  [[nodiscard]] std::vector<NamedTopic> named() const override {
+    return any() ? transform_topics() : std::vector<NamedTopic>();
+  }
   [[nodiscard]] bool decode(std::uint32_t port, const RawMessage& message, const Now& now,
                             TopicCounts& counts) override;
   // Hands over the changed poses, and reports missing transforms.

@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <iterator>
 #include <utility>
 
 #include "monitor/intake/frame_decoders.hpp"
@@ -19,6 +20,10 @@ bool needs_transforms(const Scene& scene) noexcept {
   return std::ranges::any_of(scene.sensors, [](const Sensor& sensor) { return sensor.is_on_tf(); });
 }
 
+std::vector<NamedTopic> transform_topics() {
+  return {{"/tf", &kRosTf}, {"/tf_static", &kRosTfStatic}};
+}
+
 std::optional<Decoder::Wanted> SensorMessages::wants(const TopicName& topic) {
   if (!use_) return std::nullopt;
   if (topic.type == kTransformsType) return wants_transforms(topic.name);
@@ -32,15 +37,16 @@ std::optional<Decoder::Wanted> SensorMessages::wants(const TopicName& topic) {
                kRosCameraInfo);
 }
 
-// Points and maps have one of two types.
+// Points and maps have one of two types: the first one of the kind is awaited.
 std::vector<NamedTopic> SensorMessages::named() const {
   std::vector<NamedTopic> named;
   if (!use_) return named;
   for (const Sensor& sensor : scene_->sensors) {
-    if (sensor.kind != SensorKind::kDepthImage) continue;
-    named.push_back({sensor.topic, &kRosImage});
-    named.push_back({sensor.camera_info, &kRosCameraInfo});
+    const auto decoder = std::ranges::find(frame_decoders(), sensor.kind, &FrameDecoder::kind);
+    named.push_back({sensor.topic, decoder->delivery});
+    if (!sensor.camera_info.empty()) named.push_back({sensor.camera_info, &kRosCameraInfo});
   }
+  if (needs_transforms(*scene_)) std::ranges::move(transform_topics(), std::back_inserter(named));
   return named;
 }
 

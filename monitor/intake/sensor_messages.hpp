@@ -37,6 +37,9 @@ using UseSensorMessage = std::function<void(RawSensorMessage message)>;
 // The type of /tf and /tf_static. Where an intake has ros_transforms, these come through it.
 inline constexpr std::string_view kTransformsType = "tf2_msgs/msg/TFMessage";
 
+// The topics of the transforms that publishers send.
+[[nodiscard]] std::vector<NamedTopic> transform_topics();
+
 // True if a sensor of the cell stands in a frame of tf.
 [[nodiscard]] bool needs_transforms(const Scene& scene) noexcept;
 

@@ -81,6 +81,16 @@ RosDiscovery ros_discovery() {
   return ros;
 }
 
+// ROS 2's distributions are named in alphabetical order. Noetic is of ROS 1, and says nothing of
+// nodes of ROS 2.
+std::string why_no_ros_node() {
+  const std::string distribution = variable("ROS_DISTRO");
+  if (distribution.empty()) return "ROS_DISTRO is not set";
+  if (distribution >= "iron" && distribution != "noetic") return "";
+  return fmt::format("ROS_DISTRO is {}, and nodes before Iron misread what it would send",
+                     distribution);
+}
+
 // A stated domain wins, so that a variable that is meant for ROS 2 does not move a cell that states
 // one.
 Domain domain_of(const DdsOptions& options) {

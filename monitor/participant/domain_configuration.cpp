@@ -157,8 +157,8 @@ std::string describe_interface(const Interface& interface) {
 std::string who_reaches(const DdsOptions& options) {
   const std::string name = interface_of(options).name;
   if (name == "default" && options.peers.empty()) {
-    return "every program without a configuration reaches it, and ROS 2 nodes of this machine with "
-           "ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST";
+    return "every program without a configuration reaches it, and ROS 2 nodes of this machine on "
+           "rmw_cyclonedds with ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST";
   }
   if (name != "ros") return "";
   switch (ros_discovery().range) {
@@ -166,10 +166,11 @@ std::string who_reaches(const DdsOptions& options) {
       return "ROS_AUTOMATIC_DISCOVERY_RANGE=OFF: no other program reaches it";
     case RosRange::kLocalhost:
       return "programs of this machine reach it with ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST, with "
-             "ROS_LOCALHOST_ONLY=1 or with --interface lo; ROS 2 nodes without these do not";
+             "ROS_LOCALHOST_ONLY=1 (nodes on rmw_cyclonedds) or with --interface lo; ROS 2 nodes "
+             "without these do not";
     case RosRange::kSubnet:
       return "every program without a configuration reaches it, and every ROS 2 node of this "
-             "machine unless its ROS_AUTOMATIC_DISCOVERY_RANGE is OFF";
+             "machine on rmw_cyclonedds unless its ROS_AUTOMATIC_DISCOVERY_RANGE is OFF";
     case RosRange::kSystemDefault:
       return "every program without a configuration reaches it";
   }
@@ -237,10 +238,14 @@ std::string how_to_reach(const DdsOptions& options, std::uint32_t domain) {
   }
   if (!who.empty()) return fmt::format("{}, {}", who, on);
   const Network network = network_of(options);
+  // These nodes name lo themselves, and Cyclone refuses a card that is named twice.
+  const bool is_on_lo = interface_of(options).name == "lo";
   return fmt::format(
       "other programs reach it with CYCLONEDDS_URI='<CycloneDDS><Domain>{}{}</Domain></CycloneDDS>'"
-      ", {}",
-      element("General", general_xml(network)), element("Discovery", discovery_xml(network)), on);
+      ", {}{}",
+      element("General", general_xml(network)), element("Discovery", discovery_xml(network)), on,
+      is_on_lo ? "; nodes of Humble with ROS_LOCALHOST_ONLY=1 reach it without, and end with it"
+               : "");
 }
 
 }  // namespace clearance

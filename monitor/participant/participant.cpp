@@ -207,10 +207,14 @@ Participant::Participant(const DdsOptions& options, const std::string& ros_node)
   participant_ = check_dds(dds_create_participant(domain_->number, nullptr, nullptr),
                            fmt::format("joining {}", where_));
   make_publisher_and_subscriber(options.partition);
-  if (!ros_node.empty() && partition_.empty()) {
+  if (ros_node.empty() || !partition_.empty()) return;
+  const std::string why_not = why_no_ros_node();
+  if (why_not.empty()) {
     node_ = std::make_unique<RosNode>(participant_, ros_node, [this] {
       return make_ros_writer(kRosEntities, "ros_discovery_info");
     });
+  } else if (interface_of(options).name == "ros") {
+    how_to_reach_ += fmt::format("; it is not a node of ROS 2: {}", why_not);
   }
 }
 

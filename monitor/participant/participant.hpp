@@ -55,7 +55,7 @@ struct WriterFacts {
 class Participant {
  public:
   // With a name and in the default partition, the participant becomes a node of ROS 2 with its
-  // first endpoint of a topic of ROS 2.
+  // first endpoint of a topic of ROS 2, unless why_no_ros_node() has a reason.
   explicit Participant(const DdsOptions& options, const std::string& ros_node = {});
   // Makes endpoints in a participant that its owner deletes after this.
   Participant(dds_entity_t participant, const std::string& partition);

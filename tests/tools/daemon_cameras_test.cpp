@@ -27,6 +27,7 @@ namespace {
 // The slabs of the pixels cover the wall up to its depth less the error, everywhere below the ball.
 TEST_F(DaemonCameras, GivesTheExactDistanceToAWallInADepthImage) {
   start(kImage + kAbove);
+  EXPECT_TRUE(have_readers(client, dds.partition, {"rt/cam/image", "rt/cam/camera_info"}));
   RosCamera camera(client, {});
   ASSERT_TRUE(camera.is_heard());
   ASSERT_TRUE(step_until(
@@ -103,6 +104,20 @@ TEST_F(DaemonCameras, GivesTheExactDistanceToTheCubesOfAnOctomap) {
   EXPECT_LE(ball_pair().lower, 2.0 - 0.8 - kRadius);
   EXPECT_NEAR(ball_pair().upper, 2.0 - 0.8 - kRadius, 1e-6) << "cubes contain the exact ones";
   dds_delete(writer);
+}
+
+TEST_F(DaemonCameras, HaveReadersBeforeAnyPublisherAndThenThoseOfItsType) {
+  start("octomap: /map, age_limit_ms: 1000");
+  EXPECT_TRUE(have_readers(client, dds.partition, {"rt/map", "rt/tf", "rt/tf_static"}));
+  start(kPoints + kAbove);
+  ASSERT_TRUE(have_readers(client, dds.partition, {"rt/cam/points"})) << daemon->output();
+  const dds_entity_t scan = client.ros_writer(kRosLaserScan, "rt/cam/points");
+  ASSERT_TRUE(eventually([&] { return matched_readers(scan) > 0; })) << daemon->output();
+  EXPECT_TRUE(eventually([&] {
+    return types_read(client, dds.partition)["rt/cam/points"] ==
+           std::set<std::string>{kRosLaserScan.descriptor->m_typename};
+  })) << "ROS 2's tools refuse a topic of two types";
+  dds_delete(scan);
 }
 
 // Servers of maps publish a map that does not change once, for readers that come later as well.

@@ -228,7 +228,8 @@ TEST_F(DaemonJoints, ThatNobodySendsAreMissedWithWhatIsThereInstead) {
   EXPECT_TRUE(step_until(
       50, [] {},
       told("joints-silent", {"3 joints of arm", "shoulder, elbow, push", "rt/tf", "interface lo",
-                             "domain " + std::to_string(*dds.domain)})))
+                             "domain " + std::to_string(*dds.domain), "ros meets ROS 2 nodes",
+                             "ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST"})))
       << daemon->output();
 }
 

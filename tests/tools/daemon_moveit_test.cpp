@@ -146,6 +146,7 @@ class DaemonMoveIt : public WatchedDaemon {
 
 TEST_F(DaemonMoveIt, CollisionObjectAddsMovesAndRemoves) {
   start();
+  EXPECT_TRUE(have_readers(client, dds.partition, {"rt/collision_object", "rt/planning_scene"}));
   CollisionObject ball = sphere_object("ball", "map", {4, 0, 0});
   send(ball);
   ASSERT_TRUE(comes("ball", "finger", 4 - 0.1 - 2.15)) << daemon->output();

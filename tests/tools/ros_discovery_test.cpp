@@ -107,7 +107,14 @@ TEST_F(RosDiscoveryNetwork, WhereRosIsSetUpTheDaemonMeetsEveryNodeOfItsMachine) 
     EXPECT_TRUE(hears(here, node)) << node << '\n' << daemon->output();
   EXPECT_TRUE(hears(there, kSubnet)) << daemon->output();
   EXPECT_TRUE(hears(here, domain_configuration({.interface = "lo"}))) << "a client elsewhere on lo";
-  EXPECT_TRUE(daemon->told("how-to-reach", {"every ROS 2 node of this machine"}))
+  EXPECT_TRUE(daemon->told("how-to-reach", {"every ROS 2 node of this machine on rmw_cyclonedds"}))
+      << daemon->output();
+}
+
+TEST_F(RosDiscoveryNetwork, BesideHumbleTheDaemonMeetsNodesAndSaysThatItIsNone) {
+  start({{"ROS_DISTRO", "humble"}});
+  EXPECT_TRUE(hears(here, kHumbleLocalhost)) << daemon->output();
+  EXPECT_TRUE(daemon->told("how-to-reach", {"not a node of ROS 2: ROS_DISTRO is humble, "}))
       << daemon->output();
 }
 
@@ -151,6 +158,8 @@ TEST_F(RosDiscoveryNetwork, TheProposedSettingsReachADaemonOnLoopback) {
   for (const std::string& node : {kSubnet, kLocalhost, kHumble})
     EXPECT_TRUE(hears(here, node + "," + proposed())) << proposed();
   EXPECT_TRUE(hears(here, kHumbleLocalhost)) << "without them, as with them the node ends";
+  EXPECT_TRUE(daemon->told("how-to-reach", {"Humble with ROS_LOCALHOST_ONLY=1 reach it without"}))
+      << daemon->output();
 }
 
 TEST_F(RosDiscoveryNetwork, CyclonesOwnVariableMayNameTheCardOfRos) {

@@ -5,6 +5,7 @@ usage: ros_packages_test.py BUILD
 
 import importlib.util
 import json
+import os
 import pathlib
 import re
 import subprocess
@@ -54,10 +55,30 @@ KEYS = {
 OF_COLCON = {"g++", "ninja-build"}  # or of another compiler and build program
 
 
+# The keywords that Jazzy's classes of launch and launch_ros take, as far as these launch files may need them.
+OF_ACTION = {"condition"}
+OF_PROCESS = OF_ACTION | {"cmd", "name", "cwd", "env", "additional_env", "shell", "output", "log_cmd", "on_exit", "respawn", "respawn_delay", "sigterm_timeout"}
+KEYWORDS = {
+    "LaunchDescription": set(),
+    "DeclareLaunchArgument": OF_ACTION | {"default_value", "description", "choices"},
+    "ExecuteProcess": OF_PROCESS,
+    "GroupAction": OF_ACTION | {"scoped", "forwarding", "launch_configurations"},
+    "IncludeLaunchDescription": OF_ACTION | {"launch_arguments"},
+    "OpaqueFunction": OF_ACTION | {"function", "args", "kwargs"},
+    "Shutdown": OF_ACTION | {"reason"},
+    "PythonLaunchDescriptionSource": set(),
+    "LaunchConfiguration": {"default"},
+    "Node": (OF_PROCESS - {"cmd"}) | {"package", "executable", "namespace", "exec_name", "parameters", "remappings", "ros_arguments", "arguments"},
+}
+
+
 class Named:
-    """Any class of launch: it keeps what it was given."""
+    """Any class of launch: it keeps what it was given, and refuses keywords that the class does not have."""
 
     def __init__(self, *args, **kwargs):
+        unknown = set(kwargs) - KEYWORDS[type(self).__name__]
+        if unknown:
+            raise TypeError(f"{type(self).__name__} has no {', '.join(sorted(unknown))}")
         self.args, self.kwargs = args, kwargs
 
 
@@ -152,6 +173,18 @@ def plotjuggler_paths(topics):
         yield topic, name[len(topic) + 1 :].split("/")
 
 
+RVIZ = {"RobotModel": "std_msgs/msg/String", "MarkerArray": "visualization_msgs/msg/MarkerArray"}  # what displays read
+
+
+def rviz_topics():
+    """(topic, type, durability) of each display of rviz's layout that reads one."""
+    text = (OURS / "rviz/clearance.rviz").read_text()
+    for display in re.split(r"(?m)^    - Class: rviz_default_plugins/", text)[1:]:
+        kind = display.split("\n", 1)[0]
+        for topic in re.findall(r"(?m)^        Value: (\S+)\n(?:        .*\n)*?        Durability Policy: (.+)$", display):
+            yield topic[0], RVIZ[kind], topic[1]
+
+
 def placed_panels(place, panels):
     """The panels that a part of a layout shows, with those of the tabs in it."""
     if isinstance(place, dict):
@@ -206,6 +239,13 @@ class RosPackages(unittest.TestCase):
         self.assertEqual(command_line(cell="cell.yaml", use_sim_time="True")[-1], "--use-sim-time")
         self.assertEqual(self.check(use_sim_time="true").returncode, 0)
 
+    def test_a_keyword_that_a_class_of_launch_does_not_have_is_refused(self):
+        launch_file()
+        actions = sys.modules["launch.actions"]
+        for wrong in ({"on_exits": print}, {"respawn_dely": 1.0}):
+            with self.assertRaisesRegex(TypeError, next(iter(wrong))):
+                actions.ExecuteProcess(cmd=["clearanced"], **wrong)
+
     def test_a_launch_file_without_rviz2_starts_nothing(self):
         self.assertEqual(len(started(cell="cell.yaml")), 1)
         with self.assertRaises(LookupError):
@@ -234,6 +274,16 @@ class RosPackages(unittest.TestCase):
         self.assertLessEqual({"/clearance/minimum_distance", "/clearance/speed_scaling"}, {topic for topic, _ in curves})
         for topic, fields in curves:
             self.assertTrue(is_number(topic, fields, topics, types), f"{topic} {fields}")
+
+    def test_the_layout_of_rviz_reads_topics_that_are_written_and_as_they_are(self):
+        topics = {**named_topics(), "/robot_description": "std_msgs/msg/String"}
+        read = list(rviz_topics())
+        self.assertEqual({topic for topic, _, _ in read}, {"/robot_description", "/clearance/markers"})
+        for topic, kind, durability in read:
+            self.assertEqual(topics.get(topic), kind, topic)
+            self.assertEqual(durability, "Transient Local" if topic == "/robot_description" else "Volatile", topic)
+        default = re.search(r"`world_frame` \| \| `(\w+)`", (ROOT / "config/KEYS.md").read_text())
+        self.assertIn(f"    Fixed Frame: {default[1]}\n", (OURS / "rviz/clearance.rviz").read_text())
 
     def test_the_saved_layout_plots_the_same_figures_of_ros_and_of_our_own_topics(self):
         figures = [(topic, fields) for topic, fields in foxglove_paths(saved_layout()) if fields and fields != ["data"]]
@@ -295,6 +345,7 @@ class RosPackages(unittest.TestCase):
         found = [xml.parse(folder / "package.xml").getroot() for folder in folders]
         self.assertEqual([each.find("name").text for each in found], [folder.name for folder in folders])
         self.assertEqual(len({each.find("version").text for each in found}), 1)
+        self.assertIn("clearance", {each.text for each in found[0].iter("exec_depend")}, "the launch files start its daemon")
         for folder in folders:
             self.assertIn(f"project({folder.name}", (folder / "CMakeLists.txt").read_text())
 
@@ -315,6 +366,11 @@ class RosPackages(unittest.TestCase):
         for target in ("clearanced", "clearance-replay", "clearance_client"):
             self.assertRegex(targets, rf"(?m)\b{target}$")
         self.assertNotIn("core_tests", targets)
+
+    def test_the_live_tests_are_not_run_without_a_ros_2(self):
+        bare = {name: text for name, text in os.environ.items() if name != "AMENT_PREFIX_PATH"}
+        done = subprocess.run([ROOT / "tools/check", "--ros2"], env=bare, capture_output=True, text=True, timeout=60)
+        self.assertEqual((done.returncode, done.stdout), (0, "check: no ROS 2 here\n"))
 
     def test_every_message_is_listed_and_every_listed_message_exists(self):
         listed = re.findall(r"msg/\w+\.msg", (MESSAGES / "CMakeLists.txt").read_text())

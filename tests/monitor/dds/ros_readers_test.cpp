@@ -4,8 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
-#include <array>
-#include <set>
 #include <string>
 
 #include "monitor/dds/pose_reader.hpp"
@@ -82,28 +80,9 @@ TEST_F(RosReadersTest, OfOneInstantAreWhatOurOwnTopicSays) {
   EXPECT_EQ(inputs.refused_sources().size(), 1u);
 }
 
-// The topics that have a reader of another program, as 'ros2 topic info' knows them.
-std::set<std::string> topics_with_readers(Participant& participant) {
-  const dds_entity_t reader =
-      dds_create_reader(participant.handle(), DDS_BUILTIN_TOPIC_DCPSSUBSCRIPTION, nullptr, nullptr);
-  std::set<std::string> topics;
-  std::array<void*, 64> samples{};
-  std::array<dds_sample_info_t, 64> infos{};
-  const dds_return_t count = dds_take(reader, samples.data(), infos.data(), 64, 64);
-  for (std::size_t i = 0; i < static_cast<std::size_t>(std::max(count, 0)); ++i) {
-    if (infos[i].valid_data)
-      topics.insert(static_cast<const dds_builtintopic_endpoint_t*>(samples[i])->topic_name);
-  }
-  if (count > 0) dds_return_loan(reader, samples.data(), count);
-  dds_delete(reader);
-  return topics;
-}
-
 TEST_F(RosReadersTest, StandBeforeAnyPublisherAndLoseNoMessageOfTheFirst) {
-  EXPECT_TRUE(test::eventually([&] {
-    const std::set<std::string> topics = topics_with_readers(robot);
-    return topics.contains("rt/joint_states") && topics.contains("rt/left/joint_states");
-  }));
+  EXPECT_TRUE(
+      test::have_readers(robot, dds.partition, {"rt/joint_states", "rt/left/joint_states"}));
   test::RosJoints joints(robot);
   ASSERT_TRUE(joints.is_heard());
   joints.send({"right_push"}, {0.1});
@@ -225,6 +204,28 @@ TEST(RosReaders, TransformsComeFromBothTopicsWhicheverWasThereFirst) {
   EXPECT_TRUE(comes_to({0, 0, 1}));
   frames.send({{"map", "cart", {3, 0, 0}}});
   EXPECT_TRUE(comes_to({3, 0, 1}));
+}
+
+TEST(RosReaders, OfTransformsStandBeforeAnyPublisherWhereTheCellNeedsThem) {
+  Cell cell{test::cell_of({test::moving("cart", {test::ball(0.1)})})};
+  const DdsOptions dds = test::own_dds();
+  Participant daemon(dds), robot(dds);
+  {
+    PoseReader inputs(cell, daemon);
+    inputs.start();
+    EXPECT_TRUE(test::have_readers(robot, dds.partition, {cell.topics.poses}));
+    EXPECT_FALSE(test::types_read(robot, dds.partition).contains("rt/tf"));
+  }
+  cell.scene.objects[0].frame = "cart_link";
+  PoseReader inputs(cell, daemon);
+  inputs.start();
+  EXPECT_TRUE(test::have_readers(robot, dds.partition, {"rt/tf", "rt/tf_static"}));
+  test::RosFrames fixed(robot, test::RosFrames::Kind::kStatic);
+  fixed.send({{"map", "cart_link", {0, 0, 1}}});
+  EXPECT_TRUE(test::eventually([&] {
+    const PoseBatch* const came = inputs.next();
+    return came != nullptr && came->samples.at(0).world_from_object.position == Vec3(0, 0, 1);
+  })) << "the reader that stood before hears it";
 }
 
 }  // namespace

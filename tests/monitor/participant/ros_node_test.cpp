@@ -4,7 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <functional>
+#include <optional>
 #include <set>
 #include <string>
 #include <vector>
@@ -31,13 +33,32 @@ Ids ids(const auto& sequence) {
   return found;
 }
 
+DdsOptions in_default_partition() {
+  DdsOptions dds = test::own_dds();
+  dds.partition.clear();
+  return dds;
+}
+
+// The value of ROS_DISTRO while this lives; null: none.
+class Distribution {
+ public:
+  explicit Distribution(const char* name) {
+    if (const char* const text = std::getenv("ROS_DISTRO")) before_ = text;
+    set(name);
+  }
+  ~Distribution() { set(before_ ? before_->c_str() : nullptr); }
+  Distribution(const Distribution&) = delete;
+  Distribution& operator=(const Distribution&) = delete;
+
+ private:
+  static void set(const char* name) {
+    name != nullptr ? ::setenv("ROS_DISTRO", name, 1) : ::unsetenv("ROS_DISTRO");
+  }
+  std::optional<std::string> before_;
+};
+
 class RosNodeTest : public testing::Test {
  protected:
-  static DdsOptions in_default_partition() {
-    DdsOptions dds = test::own_dds();
-    dds.partition.clear();
-    return dds;
-  }
   // The last message of this participant; false if none comes that is so.
   bool tells(const std::function<bool(const Info&)>& is_so,
              std::chrono::seconds limit = std::chrono::seconds(20)) {
@@ -55,6 +76,7 @@ class RosNodeTest : public testing::Test {
         limit);
   }
 
+  Distribution distribution{"jazzy"};
   DdsOptions dds = in_default_partition();
   Participant node{dds, "clearanced_left"};
   Participant other{dds};
@@ -94,6 +116,7 @@ TEST_F(RosNodeTest, IsNoneWithoutTopicsOfRos) {
 }
 
 TEST(RosNode, IsNoneInAPartitionThatRosDoesNotKnow) {
+  const Distribution distribution("jazzy");
   const DdsOptions dds = test::own_dds();
   Participant node(dds, "clearanced"), other(dds);
   const dds_entity_t reader = other.ros_reader(kRosEntities, "ros_discovery_info");
@@ -101,6 +124,26 @@ TEST(RosNode, IsNoneInAPartitionThatRosDoesNotKnow) {
   node.ros_writer(kRosJointState, "rt/joint_states");
   ASSERT_TRUE(test::eventually([&] { return test::matched_writers(joints) == 1; }));
   EXPECT_EQ(test::matched_writers(reader), 0u);
+}
+
+// The number of writers of ros_discovery_info that a daemon has beside nodes of a distribution.
+std::uint32_t nodes_beside(const char* name) {
+  const Distribution distribution(name);
+  const DdsOptions dds = in_default_partition();
+  Participant node(dds, "clearanced"), other(dds);
+  const dds_entity_t reader = other.ros_reader(kRosEntities, "ros_discovery_info");
+  const dds_entity_t joints = other.ros_reader(kRosJointState, "rt/joint_states");
+  node.ros_writer(kRosJointState, "rt/joint_states");
+  EXPECT_TRUE(test::eventually([&] { return test::matched_writers(joints) == 1; }));
+  return test::matched_writers(reader);
+}
+
+TEST(RosNode, IsNoneBesideNodesThatWouldMisreadItOrMay) {
+  for (const char* name : {"iron", "jazzy", "kilted", "rolling"})
+    EXPECT_EQ(nodes_beside(name), 1u) << name;
+  for (const char* name : {"foxy", "galactic", "humble", "noetic", ""})
+    EXPECT_EQ(nodes_beside(name), 0u) << name;
+  EXPECT_EQ(nodes_beside(nullptr), 0u);
 }
 
 TEST(RosNode, HasANameThatRosAllows) {

@@ -292,6 +292,7 @@ int own_domain() {
 // Without CYCLONEDDS_URI, all traffic stays on this machine.
 int main(int argc, char** argv) {
   testing::InitGoogleTest(&argc, argv);
+  setenv("ROS_DISTRO", "jazzy", 0);  // a workspace without the package ros_environment has none
   setenv("ROS_DOMAIN_ID", std::to_string(own_domain()).c_str(), 1);
   if (getenv("CYCLONEDDS_URI") == nullptr) setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST", 1);
   rclcpp::init(argc, argv);
