@@ -125,7 +125,7 @@ void PoseCandidate::rest_from_now() noexcept {
 
 }  // namespace
 
-// The greatest coefficient would say nothing: it passes over NaN.
+// Each coordinate is compared: maxCoeff() may pass over NaN.
 bool is_usable(const Pose& pose) noexcept {
   return (pose.position.array().abs() <= kLargestCoordinate).all() && is_unit(pose.orientation);
 }

@@ -104,7 +104,7 @@ struct alignas(64) TrackedObject {
   }
 };
 
-// True if distance queries accept the pose (core/pose.hpp).
+// True if no coordinate is beyond kLargestCoordinate and the quaternion is of unit length.
 [[nodiscard]] bool is_usable(const Pose& pose) noexcept;
 
 // The state before any input: a fixed object is at its pose in the scene.

@@ -28,7 +28,7 @@ void RosReaders::stand() {
   }
 }
 
-// Readers for another type or delivery of the topic stand no more: ROS 2's tools refuse a topic of
+// Readers for another type or delivery of the topic are deleted: ROS 2's tools refuse a topic of
 // two types.
 dds_entity_t RosReaders::reader_of(const RosType& delivery, const std::string& topic) {
   const Standing wanted{topic, delivery.descriptor, delivery.is_latched};

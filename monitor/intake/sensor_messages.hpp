@@ -37,7 +37,7 @@ using UseSensorMessage = std::function<void(RawSensorMessage message)>;
 // The type of /tf and /tf_static. Where an intake has ros_transforms, these come through it.
 inline constexpr std::string_view kTransformsType = "tf2_msgs/msg/TFMessage";
 
-// The topics of the transforms that publishers send.
+// The names and types of /tf and /tf_static.
 [[nodiscard]] std::vector<NamedTopic> transform_topics();
 
 // True if a sensor of the cell stands in a frame of tf.

@@ -57,7 +57,7 @@ struct RosDiscovery {
 // looked up.
 [[nodiscard]] RosDiscovery ros_discovery();
 
-// Says why a node would harm others on ros_discovery_info, or may; empty: it would not. Up to
+// Returns why this program must not be a node of ROS 2; empty: it may. Up to
 // Humble, an id in this message has 24 bytes instead of 16, under the same name of the type: nodes
 // misread the rest, and end or use up memory. ROS_DISTRO says which nodes there are.
 [[nodiscard]] std::string why_no_ros_node();

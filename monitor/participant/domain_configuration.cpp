@@ -238,13 +238,15 @@ std::string how_to_reach(const DdsOptions& options, std::uint32_t domain) {
   }
   if (!who.empty()) return fmt::format("{}, {}", who, on);
   const Network network = network_of(options);
-  // These nodes name lo themselves, and Cyclone refuses a card that is named twice.
+  // Humble's nodes with ROS_LOCALHOST_ONLY=1 name lo themselves, and Cyclone refuses an interface
+  // that is named twice.
   const bool is_on_lo = interface_of(options).name == "lo";
   return fmt::format(
       "other programs reach it with CYCLONEDDS_URI='<CycloneDDS><Domain>{}{}</Domain></CycloneDDS>'"
       ", {}{}",
       element("General", general_xml(network)), element("Discovery", discovery_xml(network)), on,
-      is_on_lo ? "; nodes of Humble with ROS_LOCALHOST_ONLY=1 reach it without, and end with it"
+      is_on_lo ? "; nodes of Humble with ROS_LOCALHOST_ONLY=1 reach it without this, and terminate "
+                 "with it"
                : "");
 }
 

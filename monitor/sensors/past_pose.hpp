@@ -15,7 +15,7 @@ struct PastPose {
   double shift_error = 0.0, turn_error = 0.0;  // m; |R - R_exact|
 
   [[nodiscard]] double error(double radius) const noexcept;
-  // False for what no frame is built of: a known pose that is no pose, or errors below 0.
+  // True if it is not known, or if its pose is usable and no error is negative or NaN.
   [[nodiscard]] bool is_sound() const noexcept;
 };
 

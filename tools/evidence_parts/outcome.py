@@ -1,7 +1,7 @@
 """Outcomes of long runs in build/NAME/outcome.json: each names the commit and what was changed beside it."""
 import json, subprocess
 
-# What a pack of evidence takes in, by its name: the program that runs it.
+# Long runs by name, each with the program that makes it.
 LONG_RUNS = {"analysis": "tools/analyse", "coverage": "tools/coverage", "mutants": "tests/mutants/run", "soak": "tools/soak",
              "reproducible": "tests/tools/packages/reproducible"}
 
@@ -20,7 +20,7 @@ def write(root, name, outcome, faults, **more):
 
 
 def read(root, name):
-    """The same, if it is of this commit. Of another one, or of a changed tree, it has neither faults nor figures."""
+    """What write() has left, if it is of this commit. Otherwise it has neither faults nor figures."""
     file = root / "build" / name / "outcome.json"
     if not file.exists():
         return {"outcome": f"not run ({LONG_RUNS[name]})", "faults": []}

@@ -82,7 +82,7 @@ def of(evidence):
 {assumptions(evidence)}</table>
 <h2>Faults: cause, effect, detection, reaction</h2><p>The rows are those of monitor/FAULTS.md. Times are ticks of 1 ms from
 the beginning of a fault until it is told, median / longest of so many runs of the campaign of inputs that lie, by kind.
-A row without an effect has the one that the page begins with: bounds are wider or unknown, and nothing unknown is clear.</p>
+A row without an effect has the one that FAULTS.md states first: bounds are wider or unknown, and nothing unknown is clear.</p>
 <table><tr><th>section<th>cause<th>effect<th>detection<th>time until detected<th>reaction<th>tests</tr>{fmea(evidence)}</table>
 <h2>Coverage</h2><table><tr><th>room<th>branches<th>MC/DC</tr>{coverage(evidence)}</table>
 <h2>Libraries</h2><p>The same list as SPDX: sbom.spdx.json.</p>

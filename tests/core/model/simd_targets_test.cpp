@@ -169,8 +169,8 @@ std::uint64_t fingerprint_of_walks(bool on_lattice) {
   return all.value();
 }
 
-// The numbers were found once. They hold for compilers, levels of optimisation and processors
-// alike.
+// Recorded by g++ 12 on x86-64: every compiler, level of optimisation and processor has to find the
+// same.
 TEST(Distance, HasTheSameBitsInEveryBuild) {
   EXPECT_EQ(fingerprint_of_walks(false), 3109342264206936644U);
   EXPECT_EQ(fingerprint_of_walks(true), 922501430640452298U);

@@ -220,7 +220,7 @@ TEST(TrackedObject, AgesOfExtremeStampsDoNotOverflow) {
   EXPECT_EQ(state.input.age_ns(kEarliest), 0);
 }
 
-TEST(TrackedObjectState, HasNoPoseThatQueriesRefuse) {
+TEST(Pose, IsUsableOnlyIfAllItsNumbersAreFiniteAndInReach) {
   EXPECT_TRUE(is_usable(Pose{}));
   for (const double value : {kNoNumber, std::numeric_limits<double>::infinity(), -1e300}) {
     for (int axis = 0; axis < 3; ++axis) {

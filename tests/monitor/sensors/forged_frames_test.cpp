@@ -31,9 +31,10 @@ class ForgedFrames : public SensorsTest {
     add(flat(0, 1500));
     static_cast<void>(settle(kStart + 25'000'000));
     ASSERT_EQ(built.size(), 1u);
+    ASSERT_FALSE(built[0].postures.objects.empty());
     ASSERT_TRUE(is_built(built[0]));
   }
-  // Whether another one's Sensors build it, after it has come as a message.
+  // True if a partner builds it from the message.
   bool is_built(const BuiltFrame& frame) const {
     Sensors other(cell, SensorsOptions{});
     return other.rebuild(
