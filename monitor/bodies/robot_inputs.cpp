@@ -142,10 +142,14 @@ void RobotInputs::save(StateWriter& out) const {
   out.put(std::span(seen_));
 }
 
-void RobotInputs::restore(StateReader& in) noexcept {
+void RobotInputs::restore(StateReader& in, std::int64_t now_ns) noexcept {
   const std::vector<TrackedVariable> own = variables_;
   in.take(std::span(variables_));
-  for (std::size_t i = 0; i < own.size(); ++i) in.expect(variables_[i].is_sound(own[i]));
+  for (std::size_t i = 0; i < own.size(); ++i) {
+    in.expect(variables_[i].is_sound(own[i]));
+    in.expect(scene_.variables[i].is_held() ||
+              variables_[i].input.is_of_no_future(now_ns, scene_.future_limit_ns));
+  }
   for (auto heard : heard_) {
     bool value = false;
     in.take(value);

@@ -67,7 +67,7 @@ class RobotInputs {
   void take_over(const RobotInputs& before, const SceneMap& map) noexcept;
   // The same through bytes, for the same scene.
   void save(StateWriter& out) const;
-  void restore(StateReader& in) noexcept;
+  void restore(StateReader& in, std::int64_t now_ns) noexcept;
 
   // Ends the tick's input and places the links of all robots with joint positions. The objects on
   // which robots stand must already be advanced.

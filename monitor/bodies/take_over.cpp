@@ -56,13 +56,15 @@ void restore(StateReader& in, const Scene& scene, Inputs& inputs) noexcept {
   in.take(std::span(inputs.objects));
   for (std::size_t i = 0; i < objects.size(); ++i) {
     in.expect(inputs.objects[i].is_sound(objects[i]));
+    in.expect(i >= inputs.robots.first_link() ||
+              inputs.objects[i].input.is_of_no_future(inputs.time.now_ns, scene.future_limit_ns));
     // No pose of its own shows that a link is there.
     in.expect(i < inputs.robots.first_link() || inputs.objects[i].absent == objects[i].absent);
     keep_body(objects[i], inputs.objects[i]);
   }
   in.take(std::span(inputs.sensors));
   for (const CarriedSensor& sensor : inputs.sensors) in.expect(has(scene, sensor.carrier));
-  inputs.robots.restore(in);
+  inputs.robots.restore(in, inputs.time.now_ns);
   in.take(inputs.sources);
   for (const SourceClock& clock : inputs.sources) in.expect(clock.is_sound());
   in.take(inputs.rejected);

@@ -8,6 +8,7 @@
 #include "monitor/app/log_line.hpp"
 #include "monitor/files/build_info.hpp"
 #include "monitor/inputs/checksum.hpp"
+#include "monitor/inputs/elapsed.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/participant/wire_values.hpp"
 #include "monitor/wire/report_checksum.hpp"
@@ -178,7 +179,7 @@ void PartnerPort::hear_notice(std::int64_t delay_ns) {
   notice_.becoming = in.becoming;
   notice_.cycle = in.cycle;
   notice_.time = {in.now_ns, in.clock_offset_ns, in.report_delay_ns};
-  notice_.due_ns = in.due_ns + delay_ns - realtime_less_monotonic();
+  notice_.due_ns = less(in.due_ns, realtime_less_monotonic() - delay_ns);
   notice_.told_late_ns = in.told_late_ns;
   notice_.count = std::min<std::size_t>(in.inputs._length, kMostTickInputs);
   for (std::size_t i = 0; i < notice_.count; ++i) {

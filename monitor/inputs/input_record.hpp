@@ -49,6 +49,11 @@ struct InputRecord {
            (has_value || ages) && contradiction.is_sound() && owner.is_sound(own.owner);
   }
 
+  // False for a value that would be young for longer than any that was taken.
+  [[nodiscard]] bool is_of_no_future(std::int64_t now_ns, std::int64_t limit_ns) const noexcept {
+    return !has_value || !ages || elapsed(now_ns, stamp_ns) <= limit_ns;
+  }
+
   // now - stamp, never negative; 0 for a fixed object, -1: no value.
   [[nodiscard]] std::int64_t age_ns(std::int64_t now_ns) const noexcept {
     if (!has_value) return -1;

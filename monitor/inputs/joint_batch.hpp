@@ -2,6 +2,7 @@
 // stamps have the same clock as those of poses (monitor/inputs/pose_batch.hpp).
 #pragma once
 
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
 
@@ -21,6 +22,14 @@ struct JointSample {
   std::uint32_t namesake = kNoSource;  // number of the sender whose name this one shares, if any
   bool stopping = false;               // its brakes act, and do so until it stands
 };
+
+// True if two samples of a joint agree. Drivers send NaN for a velocity that they do not know.
+[[nodiscard]] inline bool say_the_same(const JointSample& a, const JointSample& b) noexcept {
+  const bool same_velocity =
+      a.velocity == b.velocity || (std::isnan(a.velocity) && std::isnan(b.velocity));
+  return a.position == b.position && a.has_velocity == b.has_velocity &&
+         (!a.has_velocity || same_velocity);
+}
 
 // The largest admissible position and velocity of a joint. The sines and cosines of angles up to
 // this bound are computed without loss of digits (bodies/sine_cosine.hpp).

@@ -24,6 +24,15 @@ struct PoseSample {
   std::uint32_t namesake = kNoSource;  // number of the sender whose name this one shares, if any
 };
 
+// True if two samples of an object agree.
+[[nodiscard]] inline bool say_the_same(const PoseSample& a, const PoseSample& b) noexcept {
+  const Pose &pose_a = a.world_from_object, &pose_b = b.world_from_object;
+  const bool same_twist = a.twist.linear == b.twist.linear && a.twist.angular == b.twist.angular;
+  return pose_a.position == pose_b.position &&
+         pose_a.orientation.coeffs() == pose_b.orientation.coeffs() && a.has_twist == b.has_twist &&
+         (!a.has_twist || same_twist);
+}
+
 // The largest error of the length of a sample's quaternion, and the largest number in a sample, m,
 // m/s or rad/s. Squares and sums of such numbers stay finite. Decoders of other formats use the
 // same limits.

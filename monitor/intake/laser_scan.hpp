@@ -99,7 +99,8 @@ class ScanCloud final : public MessageCloud {
         std::abs(last - sample->angle_max) <= 1.5 * step + 1e-4 &&
         between * step <= 2.0 * std::numbers::pi + step &&
         std::max(std::abs<double>(sample->angle_min), std::abs(last)) <= kLargestAngle;
-    if (!fits || !(sample->range_min >= 0.0F && sample->range_min <= sample->range_max))
+    if (!fits || !(sample->scan_time >= 0.0F) ||
+        !(sample->range_min >= 0.0F && sample->range_min <= sample->range_max))
       return FrameFault::kLayout;
     if (step > kWidestIncrement) return FrameFault::kWideRays;
     // A driver that does not say when each ray was measured says how long a turn takes.

@@ -111,7 +111,9 @@ bool SceneTranslator::restore(std::span<const std::byte> bytes) {
   }
   for (std::size_t left = in.count(); left > 0; --left) {
     const std::string name = in.text();
-    read.padded_[name] = in.value<double>();
+    const double padding = in.value<double>();
+    if (!(padding >= 0.0 && padding <= kLargestCoordinate)) return false;
+    read.padded_[name] = padding;
   }
   AllowedCollisionMatrix matrix;
   const bool is_set = in.flag();

@@ -1,6 +1,7 @@
 #include "monitor/sensors/own_image.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "config/scene/rigid_root.hpp"
 #include "monitor/bodies/directed_rounding.hpp"
@@ -162,8 +163,8 @@ void OwnImage::find_unseen(const Body& of, const PastPose& past, const PastPose&
                         relative_pose(world_from_part, place.world_from_body), unseen.tracking);
     if (found.answer == CloudAnswer::kEmpty) continue;
     const double lower = rounded_down(found.lower - place_error - past.error(radius_of(part)));
-    if (!(lower < near.unseen)) continue;
-    near.unseen = lower;
+    if (lower >= near.unseen) continue;
+    near.unseen = std::isnan(lower) ? -kInfinity : lower;
     near.unseen_at =
         world_from_part.orientation * found.point_on_element + world_from_part.position;
   }

@@ -224,7 +224,8 @@ bool PostureHistory::place(const PlacedPostures& placed) {
   if (placed.joints.size() != variables_.size() || placed.objects.size() != objects_.size())
     return false;
   const auto is_sound = [](const PlacedPostures::Joint& joint) {
-    return !joint.known || (std::isfinite(joint.position) && joint.may_have_moved >= 0.0);
+    return !joint.known ||
+           (std::abs(joint.position) <= kLargestJoint && joint.may_have_moved >= 0.0);
   };
   if (!std::ranges::all_of(placed.joints, is_sound) ||
       !std::ranges::all_of(placed.objects, &PastPose::is_sound))

@@ -315,7 +315,7 @@ void Monitor::State::take_frames() noexcept {
     const std::int64_t stamp_ns = shown[sensor].clock.in_tick_time(
         frame.stamp_ns, inputs.time,
         {.future_ns = scene.future_limit_ns, .age_ns = scene.objects[object].age_limit_ns});
-    const std::int64_t earliest_ns = stamp_ns - scene.sensors[sensor].stamp_error_ns;
+    const std::int64_t earliest_ns = less(stamp_ns, scene.sensors[sensor].stamp_error_ns);
     const SampleLimits limits{inputs.time.now_ns, scene.future_limit_ns};
     if (const auto cause =
             see(frame.world_from_sensor, earliest_ns, limits, inputs.objects[object])) {

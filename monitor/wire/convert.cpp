@@ -250,19 +250,14 @@ void refuse_two_positions(std::vector<JointSample>& joints) {
   };
   refuse_two_values(
       joints, [](const JointSample& sample) { return sample.variable; },
-      [&](const JointSample& a, const JointSample& b) {
-        return !known(a) || a.position == b.position;
-      },
+      [&](const JointSample& a, const JointSample& b) { return !known(a) || say_the_same(a, b); },
       [](JointSample& sample) { sample.position = std::numeric_limits<double>::quiet_NaN(); });
 }
 
 void refuse_two_poses(std::vector<PoseSample>& poses) {
   refuse_two_values(
       poses, [](const PoseSample& sample) { return std::pair(sample.object, sample.stamp_ns); },
-      [](const PoseSample& a, const PoseSample& b) {
-        return a.world_from_object.position == b.world_from_object.position &&
-               a.world_from_object.orientation.coeffs() == b.world_from_object.orientation.coeffs();
-      },
+      [](const PoseSample& a, const PoseSample& b) { return say_the_same(a, b); },
       [](PoseSample& sample) {
         sample.world_from_object.position.setConstant(std::numeric_limits<double>::quiet_NaN());
       });

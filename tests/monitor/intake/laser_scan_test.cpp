@@ -188,6 +188,8 @@ TEST_F(LaserScans, ThatCannotBeWhatTheySayAreRefusedByCause) {
   EXPECT_EQ(with([](ScanText& t) { t.time_increment = 0.00099F; }), Fault::kNoFault);
   EXPECT_EQ(with([](ScanText& t) { t.time_increment = 0.00101F; }), Fault::kLongScan);
   EXPECT_EQ(with([](ScanText& t) { t.scan_time = 0.2F; }), Fault::kLongScan) << "a third of it";
+  EXPECT_EQ(with([](ScanText& t) { t.scan_time = kNan; }), Fault::kLayout);
+  EXPECT_EQ(with([](ScanText& t) { t.scan_time = -1.0F; }), Fault::kLayout);
   EXPECT_EQ(with([](ScanText& t) { t.intensities = {1.0F}; }), Fault::kNoFault);
 }
 

@@ -48,7 +48,8 @@ TEST_F(RosJointStatesTest, ComeInAnyOrderInPartAndWithNamesThatTheCellDoesNotHav
   EXPECT_EQ(heard.told(lines::kUnknownJoints.code), 1u) << "each name once";
 }
 
-// The tick refuses what is not finite, and the joint ages. Equal positions say nothing else.
+// The tick refuses what is not finite, and the joint ages. Equal positions say nothing else, if
+// they have one velocity or none that is known.
 TEST_F(RosJointStatesTest, TwoPositionsOfOneJointInOneMessageAreNone) {
   ASSERT_TRUE(take({{"right_push", "right_shoulder", "right_push"}, {0.1, -0.5, 0.2}, {}}));
   const PoseBatch batch = heard.one();
@@ -57,6 +58,14 @@ TEST_F(RosJointStatesTest, TwoPositionsOfOneJointInOneMessageAreNone) {
   EXPECT_EQ(batch.joints[1].position, -0.5);
   ASSERT_TRUE(take({{"right_push", "right_push"}, {0.1, 0.1}, {}}));
   for (const JointSample& sample : heard.one().joints) EXPECT_EQ(sample.position, 0.1);
+  for (const auto& [first, second, is_one] : {std::tuple(2.0, 2.0, true),
+                                              {2.0, 0.0, false},
+                                              {std::nan(""), std::nan(""), true},
+                                              {std::nan(""), 0.0, false}}) {
+    ASSERT_TRUE(take({{"right_push", "right_push"}, {0.1, 0.1}, {first, second}}));
+    for (const JointSample& sample : heard.one().joints)
+      EXPECT_EQ(std::isfinite(sample.position), is_one) << first << ", " << second;
+  }
 
   PoseBatch sent{SourceName("arm"), 1, 0, {}};
   sent.joints = {joint(0, 0.1, now()), joint(1, 0.3, now()), joint(0, 0.2, now())};

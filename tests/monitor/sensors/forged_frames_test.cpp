@@ -79,7 +79,7 @@ TEST_F(ForgedFrames, AreRefusedForEachPlaceThatIsNoneAndEachErrorBelowZero) {
 TEST_F(ForgedFrames, AreRefusedForEachJointThatIsNoNumberOrMovedByLessThanNothing) {
   ASSERT_FALSE(built[0].postures.joints.empty());
   for (std::size_t joint = 0; joint < built[0].postures.joints.size(); ++joint) {
-    for (const double value : {kNan, kInfinite, -kInfinite}) {
+    for (const double value : {kNan, kInfinite, -kInfinite, 1e30}) {
       BuiltFrame forged = built[0];
       forged.postures.joints[joint].known = true;
       forged.postures.joints[joint].position = value;

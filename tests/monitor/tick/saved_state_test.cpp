@@ -189,6 +189,22 @@ TEST_F(ForgedState, WithAnyOneFieldHostileIsRefusedOrHarmless) {
   EXPECT_GT(joined_states, genuine.size());
 }
 
+// A value from the future would be young for ever. Histories may have any stamp.
+TEST_F(ForgedState, WithAValueOfTheFutureIsRefused) {
+  const std::int64_t year_ns = 365LL * 86'400 * 1'000'000'000;
+  std::uint64_t ahead = 0;
+  for (std::size_t at = 0; at + 8 <= genuine.size(); ++at) {
+    std::int64_t stamp_ns = 0;
+    std::memcpy(&stamp_ns, genuine.data() + at, 8);
+    if (stamp_ns < test::kStart || stamp_ns > test::kStart + until * test::kTick) continue;
+    std::vector<std::byte> bytes = genuine;
+    stamp_ns += year_ns;
+    std::memcpy(bytes.data() + at, &stamp_ns, 8);
+    ahead += JoinedState(scene).restore(bytes, 1) ? 0 : 1;
+  }
+  EXPECT_GE(ahead, scene.variables.size() + 1) << "each joint and the cart";
+}
+
 TEST_F(ForgedState, WithDrawnBytesIsRefusedOrHarmless) {
   Random random(63);
   for (std::uint64_t forgery = 0; forgery < repeats(forgeries(), 16); ++forgery) {

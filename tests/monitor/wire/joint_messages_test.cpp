@@ -172,6 +172,20 @@ TEST(JointMessages, HaveVelocitiesIfThereIsOneForEachName) {
   EXPECT_TRUE(batch.joints.empty());
 }
 
+TEST(PoseMessages, WithOnePoseAndTwoTwistsOfAnObjectHaveNone) {
+  for (const double second : {2.0, 0.0}) {
+    PoseBatch sent{SourceName("arm"), 1, 0, std::vector<PoseSample>(2)}, received;
+    for (PoseSample& sample : sent.samples) sample.has_twist = true;
+    sent.samples[0].twist.linear.x() = 2.0;
+    sent.samples[1].twist.linear.x() = second;
+    auto wire = make_batch(2);
+    ASSERT_TRUE(to_wire(sent, *wire));
+    from_wire(*wire, received);
+    for (const PoseSample& sample : received.samples)
+      EXPECT_EQ(sample.world_from_object.position.allFinite(), second == 2.0);
+  }
+}
+
 TEST(JointMessages, OfAnEmptyBatchHaveNoNames) {
   const PoseBatch batch{SourceName("arm"), 9, 0, {}};
   const auto message = make_joint_states(batch, scene_of_two_arms());
