@@ -67,7 +67,7 @@ TEST(Intake, NamesTheTopicsOfRos2ThatItsCellNames) {
   EXPECT_THAT(names({.use_scene = [](const moveit::RawScene&) {}}),
               UnorderedElementsAre("/left/joint_states", "/joint_states", "/collision_object"));
   EXPECT_THAT(names({.use_sensor = [](const RawSensorMessage&) {}, .only_sensors = true}),
-              UnorderedElementsAre("/eye/image", "/eye/info"));
+              UnorderedElementsAre("/eye/image", "/eye/info", "/scan", "/tf", "/tf_static"));
 }
 
 TEST_F(IntakeTest, KnowsOurTopicsByTheirNamesAndTypes) {

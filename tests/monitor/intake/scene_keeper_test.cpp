@@ -6,8 +6,6 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
-#include <cmath>
-#include <cstring>
 #include <string>
 #include <vector>
 
@@ -166,22 +164,6 @@ TEST_F(KeptScene, BytesOfSomethingElseChangeNothing) {
   }
   keeper_.save(after);
   EXPECT_EQ(after, bytes);
-}
-
-TEST_F(KeptScene, PaddingsThatNoMessageCanHaveAreRefused) {
-  static_cast<void>(take(RawScene::Type::kPlanningScene, cdr_of(some_scene())));
-  std::vector<std::byte> bytes;
-  keeper_.save(bytes);
-  const double padding = 0.01;  // of some_scene()
-  std::size_t at = 0;
-  while (at + sizeof padding <= bytes.size() &&
-         std::memcmp(bytes.data() + at, &padding, sizeof padding) != 0)
-    ++at;
-  ASSERT_LE(at + sizeof padding, bytes.size());
-  for (const double forged : {std::nan(""), -1.0, HUGE_VAL}) {
-    std::memcpy(bytes.data() + at, &forged, sizeof forged);
-    EXPECT_FALSE(SceneKeeper().restore(bytes)) << forged;
-  }
 }
 
 TEST_F(KeptScene, TheFilesOfAMessageAreThoseThatItsChangesName) {
