@@ -49,7 +49,7 @@ struct InputRecord {
            (has_value || ages) && contradiction.is_sound() && owner.is_sound(own.owner);
   }
 
-  // False for a value that would be young for longer than any that was taken.
+  // False if the stamp is farther ahead of now than a sample may be: the value would never be late.
   [[nodiscard]] bool is_of_no_future(std::int64_t now_ns, std::int64_t limit_ns) const noexcept {
     return !has_value || !ages || elapsed(now_ns, stamp_ns) <= limit_ns;
   }

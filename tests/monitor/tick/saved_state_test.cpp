@@ -189,7 +189,7 @@ TEST_F(ForgedState, WithAnyOneFieldHostileIsRefusedOrHarmless) {
   EXPECT_GT(joined_states, genuine.size());
 }
 
-// A value from the future would be young for ever. Histories may have any stamp.
+// A value with a stamp of the future would never be late. Histories may have any stamp.
 TEST_F(ForgedState, WithAValueOfTheFutureIsRefused) {
   const std::int64_t year_ns = 365LL * 86'400 * 1'000'000'000;
   std::uint64_t ahead = 0;
