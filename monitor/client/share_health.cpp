@@ -13,6 +13,7 @@
 
 #include "monitor/client/sequence_view.hpp"
 #include "monitor/client/share_merge.hpp"
+#include "monitor/inputs/elapsed.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
 namespace clearance::client {
@@ -223,7 +224,8 @@ void join_health(Views views, std::span<const HealthCounts* const> counts,
     for (double Message::*const largest : kLargest)
       out.*largest = std::max(out.*largest, view->*largest);
     out.now_ns = std::max(out.now_ns, view->now_ns);
-    if (std::abs(view->clock_offset_ns) > std::abs(out.clock_offset_ns))
+    const auto size = [](std::int64_t offset_ns) { return std::abs(seconds(offset_ns)); };
+    if (size(view->clock_offset_ns) > size(out.clock_offset_ns))
       out.clock_offset_ns = view->clock_offset_ns;
     // A recording that has failed is told first, and decides what readers think of all.
     if (const std::string text = view->recording; text.starts_with("recording ")) {

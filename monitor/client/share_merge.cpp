@@ -58,11 +58,6 @@ void append(Sequence& sequence, const Element& element) {
   if (sequence._length < sequence._maximum) sequence._buffer[sequence._length++] = element;
 }
 
-// std::min passes over NaN in the second place.
-double least_of(double a, double b) {
-  return std::isnan(a) || std::isnan(b) ? -kNone : std::min(a, b);
-}
-
 bool is_nearer(const clearance_msg_PairDistance& one, const clearance_msg_PairDistance& other) {
   if (one.upper != other.upper) return one.upper < other.upper;
   return one.lower != other.lower ? one.lower < other.lower : one.pair < other.pair;
@@ -96,8 +91,8 @@ void add_counts(const clearance_msg_Distances& report, clearance_msg_Distances& 
       std::max(out.oldest_evaluation_cycles, report.oldest_evaluation_cycles);
   const bool measured = out.report_delay_ns >= 0 && report.report_delay_ns >= 0;
   out.report_delay_ns = measured ? std::max(out.report_delay_ns, report.report_delay_ns) : -1;
-  out.lower_all = least_of(out.lower_all, report.lower_all);
-  out.swept_lower_all = least_of(out.swept_lower_all, report.swept_lower_all);
+  out.lower_all = std::min(out.lower_all, report.lower_all);
+  out.swept_lower_all = std::min(out.swept_lower_all, report.swept_lower_all);
   out.newest_pose_ns = std::max(out.newest_pose_ns, report.newest_pose_ns);
   const auto older = [](std::int64_t a, std::int64_t b) {
     return a == 0 || (b != 0 && b < a) ? b : a;
@@ -143,8 +138,7 @@ bool allows_minimum(const clearance_msg_Distances& report,
                     const clearance_msg_PairDistance& least) {
   const bool is_tight =
       report.minimum.pair == least.pair || are_tight(report.minimum.lower, report.minimum.upper);
-  return report.lower_all >= least.upper ||
-         (report.minimum_certified && report.minimum.lower <= report.minimum.upper && is_tight);
+  return report.lower_all >= least.upper || (report.minimum_certified && is_tight);
 }
 
 // A robot is clear if it is clear in each share. Shares without pairs of it report it as well.
@@ -170,8 +164,7 @@ clearance_msg_RobotStop joined_stop(const ShareMap& map, std::span<const ShareVi
     const auto before = has_any ? joined : *found;
     joined = worst;
     joined.validity = std::min(before.validity, found->validity);
-    joined.clearance = least_of(before.clearance, found->clearance);
-    if (!(joined.scaling >= 0.0) || !(found->scaling >= 0.0)) joined.scaling = 0.0;
+    joined.clearance = std::min(before.clearance, found->clearance);
     joined.share = std::min(before.share, found->share);
     joined.time = found->time > before.time || std::isnan(found->time) ? found->time : before.time;
     has_any = true;
@@ -304,12 +297,10 @@ void join_separations(const ShareMap& map, std::span<const ShareView> views,
           !has_any || found->scaling < least.scaling ||
           (found->scaling == least.scaling && found->remaining < least.remaining);
       const auto worst = has_any ? std::min(validity(*found), validity(least)) : validity(*found);
-      const auto less = [&](double a, double b) { return has_any ? least_of(a, b) : a; };
-      const bool limits = found->scaling >= 0.0 && (!has_any || least.scaling >= 0.0);
+      const auto less = [&](double a, double b) { return has_any ? std::min(a, b) : a; };
       const double speed = less(found->speed_limit, least.speed_limit);
       const double remaining = less(found->remaining, least.remaining);
       if (is_nearer) least = *found;
-      if (!limits) least.scaling = 0.0;
       least.validity = worst;
       least.speed_limit = speed;
       least.remaining = remaining;

@@ -14,6 +14,7 @@
 #include "config/cell/share_topics.hpp"
 #include "monitor/client/sequence_view.hpp"
 #include "monitor/client/shared_cell.hpp"
+#include "monitor/inputs/elapsed.hpp"
 #include "monitor/participant/participant.hpp"
 
 namespace clearance::client {
@@ -127,7 +128,7 @@ struct SharedCell::ShareStreams {
   // ones. If a zone has more of them than kMost, that state is unknown.
   void note(const clearance_msg_ZoneState& state, std::int64_t now_ns) {
     constexpr std::size_t kMost = 64;
-    const bool counts = now_ns - current.former->publish_ns <= late_ns;
+    const bool counts = less(now_ns, current.former->publish_ns) <= late_ns;
     const std::int64_t first_ns = (counts ? current.former : current.latest)->now_ns;
     if (!states.contains({state.zone, state.daemon})) forget_gone(state.daemon);
     auto& all = states[{state.zone, state.daemon}];
@@ -165,7 +166,7 @@ struct SharedCell::ShareStreams {
                                                          std::int64_t now_ns) const {
     const clearance_msg_Distances* const report = current.of(revision);
     const bool is_former = report == &*current.former;
-    return is_former && now_ns - report->publish_ns > late_ns ? nullptr : report;
+    return is_former && less(now_ns, report->publish_ns) > late_ns ? nullptr : report;
   }
   // The last state at the time of this report that was written by a daemon whose reports come now.
   // Partners tick the same times. With the latest report, later states count, too.

@@ -12,6 +12,7 @@
 #include "monitor/client/sequence_view.hpp"
 #include "monitor/client/share_names.hpp"
 #include "monitor/client/share_readers.hpp"
+#include "monitor/inputs/elapsed.hpp"
 
 namespace clearance::client {
 namespace {
@@ -147,7 +148,7 @@ bool SharedCell::is_due(std::int64_t now_ns) const {
   for (const auto& share : shares_) {
     if (share->has_ahead) return true;
     has_any = has_any || share->is_new;
-    const std::int64_t age = now_ns - share->current.latest->publish_ns;
+    const std::int64_t age = less(now_ns, share->current.latest->publish_ns);
     lacks_one = lacks_one || (!share->is_new && age <= late_ns_ && at - share->came_at <= late_ns_);
   }
   if (has_any) return !lacks_one;
@@ -169,7 +170,7 @@ void SharedCell::judge(std::int64_t now_ns) {
     check.partner = share->partner;
     share->partner_is_told = true;
     if (report.cycle == 0) continue;
-    check.age_ns = now_ns - report.publish_ns;
+    check.age_ns = less(now_ns, report.publish_ns);
     // The times of two machines are compared, so that silence counts as well.
     const bool is_late = check.age_ns > late_ns_ || share->taken_at - share->came_at > late_ns_;
     if (is_late && share->reports.daemons() == 0) continue;
@@ -194,7 +195,7 @@ bool SharedCell::join(std::int64_t now_ns) {
     view.report = share.used;
     const auto of_now = [&](const auto& of_two) {
       const auto* const message = of_two.of(map_.revision());
-      const bool is_late = message != nullptr && now_ns - message->publish_ns > late_ns_;
+      const bool is_late = message != nullptr && less(now_ns, message->publish_ns) > late_ns_;
       return is_late ? nullptr : message;
     };
     view.separation = of_now(share.separation);
@@ -206,7 +207,7 @@ bool SharedCell::join(std::int64_t now_ns) {
   // but where a clock was set. The report says truly when its oldest part was published.
   if (message_->now_ns == 0) message_->now_ns = now_ns;
   if (message_->publish_ns == 0) message_->publish_ns = now_ns;
-  if (before_ns - message_->now_ns < late_ns_)
+  if (less(before_ns, message_->now_ns) < late_ns_)
     message_->now_ns = std::max(message_->now_ns, before_ns);
   message_->daemon = daemon_;
   ++message_->cycle;

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "monitor/app/log_line.hpp"
+#include "monitor/inputs/elapsed.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/wire/report_checksum.hpp"
 
@@ -50,7 +51,7 @@ void PartnerReports::note(const clearance_msg_Distances& report, bool is_other) 
 // Reports of one lineage rest on the same inputs. Those of another one may be alike by chance, and
 // need not be.
 void PartnerReports::compare(const Kept& own, const Kept& other) {
-  if (phases_.size() < 4096) phases_.push_back(own.publish_ns - other.publish_ns);
+  if (phases_.size() < 4096) phases_.push_back(less(own.publish_ns, other.publish_ns));
   if (own.lineage != other.lineage) {
     ++other_inputs_;
     if (agrees_from_ != 0 && may_tell(kOtherInputs))

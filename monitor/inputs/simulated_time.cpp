@@ -107,7 +107,9 @@ std::int64_t SimulatedTime::now_ns(std::int64_t monotonic_ns) const noexcept {
 std::int64_t SimulatedTime::passes_in(std::int64_t true_ns) const noexcept {
   const Segment now = last();
   const double speed = static_cast<double>(now.step_ns) / static_cast<double>(now.interval_ns);
-  return static_cast<std::int64_t>(std::ceil(speed * static_cast<double>(true_ns)));
+  constexpr double kMost = 1e18;  // a step within 1 ns has any speed
+  return static_cast<std::int64_t>(
+      std::clamp(std::ceil(speed * static_cast<double>(true_ns)), -kMost, kMost));
 }
 
 std::int64_t SimulatedTime::at(std::int64_t sent_ns) const noexcept {

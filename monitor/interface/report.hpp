@@ -187,8 +187,7 @@ struct RobotStop {
 // Whether the contact that is allowed for a pair is as allowed.
 enum class ContactStatus : std::uint8_t {
   // The contact is in force or not, but a pose is not known, late, contradicted or after a
-  // discontinuity. Zones
-  // treat the pair like any other.
+  // discontinuity. Zones treat the pair like any other.
   kUnknown = 0,
   kAllowed = 1,  // in force; certified to be no deeper than allowed since the last tick
   kTooDeep = 2,  // in force; may have been deeper than allowed since the last tick

@@ -19,19 +19,26 @@ namespace clearance {
 // The meaning of the number in a field.
 enum class Meaning : std::uint8_t {
   kFigure,      // a plain value: a count, a length, a time, a flag
+  kBound,       // a figure that is never NaN: one that is not known is infinite
+  kShare,       // a figure from 0 to 1: one that is not known is 0
   kCycle,       // a tick number, which a replay may count from another start; 0: never
   kPair,        // index into Scene::pairs
   kObject,      // index into Scene::objects
   kZone,        // index into Scene::zones
-  kPairStatus,  // this and the next three: the values of an enumeration
+  kContact,     // index into Scene::contacts
+  kPairStatus,  // this and the next five: the values of an enumeration
   kZoneCause,
   kValidity,
   kGradientStatus,
-  kContact,  // index into Scene::contacts
   kContactStatus,
   kContactEnded,
   kDelivery,  // sender, time and inputs of the message: not a result of the tick
 };
+[[nodiscard]] constexpr bool is_enumeration(Meaning meaning) noexcept {
+  return meaning >= Meaning::kPairStatus && meaning <= Meaning::kContactEnded;
+}
+// The word for a value of an enumeration, and "" for any other value.
+[[nodiscard]] const char* word(Meaning meaning, std::uint64_t value) noexcept;
 
 // Passed to the visitor beside the values.
 struct Field {
@@ -49,9 +56,9 @@ struct PairFields {
     visit(Field{"part_b"}, pair.part_b...);
     visit(Field{"status", Meaning::kPairStatus}, pair.status...);
     visit(Field{"distance"}, pair.distance...);
-    visit(Field{"lower"}, pair.lower...);
-    visit(Field{"upper"}, pair.upper...);
-    visit(Field{"swept_lower"}, pair.swept_lower...);
+    visit(Field{"lower", Meaning::kBound}, pair.lower...);
+    visit(Field{"upper", Meaning::kBound}, pair.upper...);
+    visit(Field{"swept_lower", Meaning::kBound}, pair.swept_lower...);
     visit(Field{"model_error"}, pair.model_error...);
     visit(Field{"stop_lower"}, pair.stop_lower...);
     visit(Field{"witness_a"}, pair.witness_a...);
@@ -74,8 +81,8 @@ struct PublishedZoneFields {
     visit(Field{"cause", Meaning::kZoneCause}, zone.cause...);
     visit(Field{"cause_object", Meaning::kObject}, zone.cause_object...);
     visit(Field{"pair", Meaning::kPair}, zone.pair...);
-    visit(Field{"clearance"}, zone.clearance...);
-    visit(Field{"swept_clearance"}, zone.swept_clearance...);
+    visit(Field{"clearance", Meaning::kBound}, zone.clearance...);
+    visit(Field{"swept_clearance", Meaning::kBound}, zone.swept_clearance...);
     visit(Field{"certified"}, zone.certified...);
     visit(Field{"since_cycle", Meaning::kCycle}, zone.since_cycle...);
   }
@@ -95,16 +102,16 @@ struct PairSeparationFields {
     visit(Field{"zone", Meaning::kZone}, pair.zone...);
     visit(Field{"pair", Meaning::kPair}, pair.pair...);
     visit(Field{"validity", Meaning::kValidity}, pair.validity...);
-    visit(Field{"clearance"}, pair.clearance...);
+    visit(Field{"clearance", Meaning::kBound}, pair.clearance...);
     visit(Field{"human_speed"}, pair.human_speed...);
     visit(Field{"robot_speed"}, pair.robot_speed...);
     visit(Field{"human_term"}, pair.human_term...);
     visit(Field{"robot_term"}, pair.robot_term...);
     visit(Field{"stopping_term"}, pair.stopping_term...);
     visit(Field{"protective_distance"}, pair.protective_distance...);
-    visit(Field{"remaining"}, pair.remaining...);
-    visit(Field{"speed_limit"}, pair.speed_limit...);
-    visit(Field{"scaling"}, pair.scaling...);
+    visit(Field{"remaining", Meaning::kBound}, pair.remaining...);
+    visit(Field{"speed_limit", Meaning::kBound}, pair.speed_limit...);
+    visit(Field{"scaling", Meaning::kShare}, pair.scaling...);
     visit(Field{"age_human_ns"}, pair.age_human_ns...);
     visit(Field{"age_robot_ns"}, pair.age_robot_ns...);
   }
@@ -117,9 +124,9 @@ struct ZoneSeparationFields {
     visit(Field{"zone", Meaning::kZone}, zone.zone...);
     visit(Field{"pair", Meaning::kPair}, zone.pair...);
     visit(Field{"validity", Meaning::kValidity}, zone.validity...);
-    visit(Field{"remaining"}, zone.remaining...);
-    visit(Field{"speed_limit"}, zone.speed_limit...);
-    visit(Field{"scaling"}, zone.scaling...);
+    visit(Field{"remaining", Meaning::kBound}, zone.remaining...);
+    visit(Field{"speed_limit", Meaning::kBound}, zone.speed_limit...);
+    visit(Field{"scaling", Meaning::kShare}, zone.scaling...);
   }
 };
 
@@ -129,10 +136,10 @@ struct RobotStopFields {
   static constexpr void for_each(Visit&& visit, Stop&... stop) {
     visit(Field{"robot"}, stop.robot...);
     visit(Field{"validity", Meaning::kValidity}, stop.validity...);
-    visit(Field{"scaling"}, stop.scaling...);
-    visit(Field{"clearance"}, stop.clearance...);
+    visit(Field{"scaling", Meaning::kShare}, stop.scaling...);
+    visit(Field{"clearance", Meaning::kBound}, stop.clearance...);
     visit(Field{"pair", Meaning::kPair}, stop.pair...);
-    visit(Field{"share"}, stop.share...);
+    visit(Field{"share", Meaning::kShare}, stop.share...);
     visit(Field{"time"}, stop.time...);
   }
 };
@@ -145,7 +152,7 @@ struct ContactFields {
     visit(Field{"pair", Meaning::kPair}, contact.pair...);
     visit(Field{"status", Meaning::kContactStatus}, contact.status...);
     visit(Field{"ended", Meaning::kContactEnded}, contact.ended...);
-    visit(Field{"depth"}, contact.depth...);
+    visit(Field{"depth", Meaning::kBound}, contact.depth...);
     visit(Field{"since_cycle", Meaning::kCycle}, contact.since_cycle...);
     visit(Field{"since_ns"}, contact.since_ns...);
     visit(Field{"ended_cycle", Meaning::kCycle}, contact.ended_cycle...);
@@ -159,8 +166,8 @@ struct HiddenFields {
   static constexpr void for_each(Visit&& visit, Hidden&... hidden) {
     visit(Field{"pair", Meaning::kPair}, hidden.pair...);
     visit(Field{"elements"}, hidden.elements...);
-    visit(Field{"thickness"}, hidden.thickness...);
-    visit(Field{"unseen"}, hidden.unseen...);
+    visit(Field{"thickness", Meaning::kBound}, hidden.thickness...);
+    visit(Field{"unseen", Meaning::kBound}, hidden.unseen...);
     visit(Field{"unseen_at"}, hidden.unseen_at...);
   }
 };
@@ -216,8 +223,8 @@ struct DistanceFields {
     visit(Field{"minimum_known"}, report.minimum_known...);
     visit(Field{"minimum_certified"}, report.minimum_certified...);
     visit(Field{"minimum"}, report.minimum...);
-    visit(Field{"lower_all"}, report.lower_all...);
-    visit(Field{"swept_lower_all"}, report.swept_lower_all...);
+    visit(Field{"lower_all", Meaning::kBound}, report.lower_all...);
+    visit(Field{"swept_lower_all", Meaning::kBound}, report.swept_lower_all...);
     visit(Field{"pairs"}, report.pairs...);
     visit(Field{"contacts"}, report.contacts...);
     visit(Field{"hidden"}, report.hidden...);

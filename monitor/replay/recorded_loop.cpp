@@ -7,6 +7,7 @@
 #include <utility>
 
 #include "monitor/files/build_info.hpp"
+#include "monitor/inputs/elapsed.hpp"
 #include "monitor/tick/self_test.hpp"
 #include "monitor/wire/partner_state.hpp"
 
@@ -115,7 +116,8 @@ void RecordedLoop::join(const TickInput& input) {
 void RecordedLoop::take_frames(const TickInput& input) {
   const std::int64_t now_ns = input.time.now_ns;
   if (input.recorded != nullptr) return rebuild_frames(input);
-  const Now now{.realtime_ns = now_ns + input.time.clock_offset_ns, .monotonic_ns = now_ns};
+  const Now now{.realtime_ns = less(now_ns, less(0, input.time.clock_offset_ns)),
+                .monotonic_ns = now_ns};
   sensors_->add(state_->samples(), state_->joints(), now.realtime_ns);
   for (const auto& message : input.sensors) sensors_->add(*message, now);
   sensors_->settle(

@@ -9,6 +9,7 @@
 #include <cmath>
 #include <limits>
 
+#include "monitor/inputs/elapsed.hpp"
 #include "monitor/intake/scene_keeper.hpp"
 
 namespace clearance {
@@ -205,7 +206,7 @@ void TickFeed::add(PoseBatch& batch, TickInput& tick) {
 // Drops batches that have waited longer than the feed reads ahead. No report has named them, so the
 // daemon did not use them.
 void TickFeed::forget_unused(std::int64_t log_ns) {
-  while (!waiting_.empty() && waiting_.front().log_ns < log_ns - kLogDisorderNs) {
+  while (!waiting_.empty() && waiting_.front().log_ns < less(log_ns, kLogDisorderNs)) {
     waiting_.pop_front();
   }
 }

@@ -124,7 +124,7 @@ bool Monitor::restore(StateReader& in) noexcept {
   State& s = *state_;
   CLEARANCE_INVARIANT(s.displacer.is_first());
   clearance::restore(in, s.scene, s.inputs);
-  s.contacts.restore(in);
+  s.contacts.restore(in, s.inputs.time.now_ns);
   s.zones.restore(in);
   if (in.good()) s.zones.count_absent(s.inputs.objects);
   for (State::Shown& shown : s.shown) {

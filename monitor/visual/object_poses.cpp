@@ -8,6 +8,7 @@
 #include "monitor/ask/stopping_joints.hpp"
 #include "monitor/bodies/bounding_sphere.hpp"
 #include "monitor/bodies/posed_part.hpp"
+#include "monitor/inputs/elapsed.hpp"
 
 namespace clearance {
 namespace {
@@ -108,7 +109,7 @@ void ObjectPoses::wait(PoseBatch batch, std::uint64_t sequence_number) {
 
 // Links are placed once, after all used batches.
 void ObjectPoses::use(const clearance_msg_Distances& report) {
-  const std::int64_t newest_ns = report.newest_pose_ns + report.clock_offset_ns;
+  const std::int64_t newest_ns = less(report.newest_pose_ns, less(0, report.clock_offset_ns));
   for (auto& [source, waiting] : waiting_) take_up_to(0, newest_ns, waiting);
   for (const auto& used : std::span(report.sources._buffer, report.sources._length)) {
     const auto found = waiting_.find(std::string_view(used.source));

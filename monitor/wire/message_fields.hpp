@@ -84,7 +84,7 @@ struct GradientPairFields {
     visit(Field{"pair", Meaning::kPair}, pair.pair...);
     visit(Field{"status", Meaning::kPairStatus}, pair.status...);
     visit(Field{"distance"}, pair.distance...);
-    visit(Field{"lower"}, pair.lower...);
+    visit(Field{"lower", Meaning::kBound}, pair.lower...);
   }
 };
 struct PairGradientFields {

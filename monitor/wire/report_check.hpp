@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "clearance.h"
+#include "monitor/inputs/elapsed.hpp"
 
 namespace clearance {
 
@@ -19,9 +20,10 @@ enum class ReportError : std::uint8_t {
   kClocksDisagree = 4,  // it was published later than now
   kOtherSource = 5,     // it is not of the daemon of the one before, or of its partner
   kRepeated = 6,        // its cycle is not above that of the one before
-  kCorrupt = 7,         // it has not the CRC that it states, or states none
-  kOtherAddress = 8,    // it was written for another domain, partition or topic
-  kShare = 9,           // a share of the cell is not whole
+  // The CRC is not the one that it states, or it states none, or a value is none of a daemon.
+  kCorrupt = 7,
+  kOtherAddress = 8,  // it was written for another domain, partition or topic
+  kShare = 9,         // a share of the cell is not whole
 };
 
 // The result for one report.
@@ -64,7 +66,7 @@ class ReportChecker {
   template <class Message>
   ReportCheck check(const Message& report, std::int64_t realtime_ns) noexcept {
     ReportCheck found;
-    if (report.publish_ns != 0) found.age_ns = realtime_ns - report.publish_ns;  // 0: a replay
+    if (report.publish_ns != 0) found.age_ns = less(realtime_ns, report.publish_ns);  // 0: a replay
     found.is_old = found.age_ns > limit_ns_;
     found.clocks_disagree = found.age_ns < -limit_ns_;
     found.other_scene = cycle_ != 0 && report.scene_revision != revision_;
@@ -102,7 +104,7 @@ class ReportChecker {
   [[nodiscard]] std::uint64_t missed_before(const Message& report) const noexcept {
     if constexpr (requires { report.lineage; }) {
       const std::int64_t period = stated_period_ns(report);
-      const std::int64_t later = report.now_ns - now_ns_;
+      const std::int64_t later = less(report.now_ns, now_ns_);
       const bool goes_on = report.cycle == cycle_ + 1 && later < 2 * period;
       if (report.lineage != lineage_ && period > 0 && !goes_on) {
         const std::int64_t steps = (later + period / 2) / period;

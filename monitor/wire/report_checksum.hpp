@@ -11,6 +11,7 @@
 #include "monitor/inputs/checksum.hpp"
 #include "monitor/wire/crc64.hpp"
 #include "monitor/wire/report_check.hpp"
+#include "monitor/wire/report_values.hpp"
 #include "monitor/wire/slow_message_fields.hpp"
 
 namespace clearance {
@@ -151,7 +152,9 @@ template <class Message>
 template <class Message>
 [[nodiscard]] ReportError delivery_error(const Message& message, std::uint64_t address) noexcept {
   using enum ReportError;
-  return !has_its_crc(message) ? kCorrupt : message.address != address ? kOtherAddress : kGood;
+  if (!has_its_crc(message)) return kCorrupt;
+  if (message.address != address) return kOtherAddress;
+  return has_values_of_a_daemon(message) ? kGood : kCorrupt;
 }
 
 // The checksum of the rest of a report, and of the state of its tick. The counts of refused samples

@@ -65,7 +65,7 @@ void Contacts::save(StateWriter& out) const {
   out.put(std::span(reports_));
 }
 
-void Contacts::restore(StateReader& in) noexcept {
+void Contacts::restore(StateReader& in, std::int64_t now_ns) noexcept {
   const std::vector<Entry> entries = entries_;
   const std::vector<ContactReport> reports = reports_;
   in.take(std::span(entries_));
@@ -76,6 +76,9 @@ void Contacts::restore(StateReader& in) noexcept {
               entries_[i].end == entries[i].end && are_flags(entries_[i].was_far));
     in.expect(report.contact == reports[i].contact && report.pair == reports[i].pair &&
               report.status <= ContactStatus::kAbsent && report.ended <= ContactEnded::kByCycle);
+    in.expect(report.since_cycle == 0 ||
+              (report.since_ns <= now_ns &&
+               entries_[i].last_ns == last_time_of(entries[i].end, report.since_ns)));
   }
 }
 

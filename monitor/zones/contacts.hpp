@@ -21,7 +21,7 @@ class Contacts {
   void take_over(const Contacts& before, const SceneMap& map) noexcept;
   // The same through bytes, for the same scene.
   void save(StateWriter& out) const;
-  void restore(StateReader& in) noexcept;
+  void restore(StateReader& in, std::int64_t now_ns) noexcept;
 
   // Stage 'allow' of a tick: ends the allowances whose end has come. Those that are in force now
   // are so for the time since the last tick.

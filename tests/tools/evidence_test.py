@@ -125,6 +125,10 @@ class Evidence(unittest.TestCase):
 | CAUSE | meaning | published meanwhile | what to do |
 |---|---|---|---|
 | not finite; no pose | nonsense \\| damage | [unknown](#late) | repair it |
+## Meanwhile
+| of rows in | published meanwhile | seen by | what to do |
+|---|---|---|---|
+| [late](#late) | wider bounds | health | wait |
 ## Tests
 | section | rows | tests |
 |---|---|---|
@@ -135,6 +139,7 @@ class Evidence(unittest.TestCase):
         self.assertEqual([len(row["times"]) for row in found], [0, 1, 0, 1])
         self.assertEqual([row["detection"] for row in found], ["see `[poses-late]`"] + ["`[poses-late]`"] * 2 + ["not finite; no pose"])
         self.assertEqual((found[3]["cause"], found[3]["effect"]), ("nonsense | damage", "unknown"))
+        self.assertEqual([row["effect"] for row in found], ["nothing", "wider bounds", "wider bounds", "unknown"])
         self.assertEqual([row["test"] for row in found], ["`Stops.Late`"] + ["`Poses.*`"] * 3)
         self.assertEqual(lost, ["monitor/FAULTS.md has no row for 'pose', which Lies.Are/Silence has told"])
         case = {"name": "Are/Silence", "time until detected: poses-late": "21 23 5", "file": "x"}
@@ -146,6 +151,8 @@ class Evidence(unittest.TestCase):
         for row in fmea.rows((ROOT / "monitor/FAULTS.md").read_text()):
             found = re.findall(r"`([A-Z][\w*]*\.[\w*]+)`", row["test"])
             self.assertTrue(found, f"monitor/FAULTS.md: no test for {row['detection']}: {row['cause']}")
+            for kind in ("cause", "effect", "detection", "reaction"):
+                self.assertTrue(row[kind], f"monitor/FAULTS.md: no {kind} of {row['detection']}: {row['cause']}")
             patterns.update(found)
         for pattern in sorted(patterns):
             known = any(fnmatch.fnmatch(name, place) for name in cases

@@ -41,13 +41,21 @@ def anchor(section):
 
 
 def rows(page):
-    """All rows that name a cause and what to do, or what happens. An empty first cell repeats the one above."""
-    tested, found = {}, []
+    """All rows that name a cause and what to do, or what happens. An empty first cell repeats the one above.
+
+    Where a row says nothing of its effect, detection or reaction, the line of its section does.
+    """
+    tested, of_section, found = {}, {}, []
     for section, columns, listed in tables(page):
         if columns == ["section", "rows", "tests"]:
             for sections, _, tests in listed:
                 for name in re.findall(r"\(#([^)]+)\)", sections):
                     tested.setdefault(name, []).append(without_links(tests))
+            continue
+        if columns[0] == "of rows in":
+            for section_link, effect, detection, reaction in listed:
+                name = re.search(r"\(#([^)]+)\)", section_link)[1]
+                of_section[name] = {"effect": effect, "detection": detection, "reaction": without_links(reaction)}
             continue
         places = {kind: next((columns.index(name) for name in names if name in columns), None)
                   for kind, names in COLUMNS.items()}
@@ -62,6 +70,8 @@ def rows(page):
             found.append({"section": section, **entry})
     for entry in found:
         entry["test"] = entry["test"] or "; ".join(tested.get(anchor(entry["section"]), []))
+        for kind, text in of_section.get(anchor(entry["section"]), {}).items():
+            entry[kind] = entry[kind] or text
     return found
 
 

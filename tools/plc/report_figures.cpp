@@ -41,7 +41,7 @@ Cause cause_of(ReportError error) {
 // A margin to objects that are absent limits nothing, and one that is not known is the least.
 double margin(double value, std::uint8_t validity) {
   if (validity == static_cast<std::uint8_t>(SeparationValidity::kAbsent)) return kInfinite;
-  return std::isnan(value) ? -kInfinite : value;
+  return value;
 }
 
 }  // namespace
@@ -112,11 +112,7 @@ void ReportFigures::fill(const clearance_msg_Separation& separation) {
     const auto lower = [&](bool is_of_row, double scaling, double left, std::uint8_t validity) {
       if (!is_of_row && !is_whole) return;
       is_there = true;
-      const bool is_known = validity > 0 &&
-                            validity <= static_cast<std::uint8_t>(SeparationValidity::kAbsent) &&
-                            scaling >= 0.0;
-      values_[i] =
-          std::min(values_[i], is_scaling ? (is_known ? scaling : 0.0) : margin(left, validity));
+      values_[i] = std::min(values_[i], is_scaling ? scaling : margin(left, validity));
     };
     for (const clearance_msg_ZoneSeparation& zone : list(separation.zones))
       lower(places_[i].zone == zone.zone, zone.scaling, zone.remaining, zone.validity);

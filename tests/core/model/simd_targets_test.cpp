@@ -6,7 +6,9 @@
 
 #include <bit>
 #include <cmath>
+#include <vector>
 
+#include "core/enclosing_polyhedron.hpp"
 #include "tests/shared/distance_judge.hpp"
 #include "tests/shared/hard_cases.hpp"
 #include "tests/shared/made.hpp"
@@ -86,6 +88,13 @@ class Fingerprint {
     add(static_cast<std::uint64_t>(r.status));
     add(static_cast<std::uint64_t>(r.path));
     add(static_cast<std::uint64_t>(r.iterations));
+  }
+  void add(const ConvexBody& body) {
+    for (const Facet& facet : body.facets) {
+      for (const double value : facet.normal) add(std::bit_cast<std::uint64_t>(value));
+      add(std::bit_cast<std::uint64_t>(facet.offset));
+    }
+    add(std::bit_cast<std::uint64_t>(body.position_error));
   }
   [[nodiscard]] std::uint64_t value() const { return value_; }
 
@@ -169,11 +178,38 @@ std::uint64_t fingerprint_of_walks(bool on_lattice) {
   return all.value();
 }
 
+// Bodies that overlap, here and 1 km away, each query without what the one before has found. And
+// what encloses them, and encloses that again.
+std::uint64_t fingerprint_of_overlaps() {
+  constexpr int kShapes = 11, kPlaces = 16;
+  Drawn drawn(401, false);
+  Fingerprint all;
+  for (int pair = 0; pair < kShapes * kShapes; ++pair) {
+    const ConvexBody a = drawn.shape(pair / kShapes), b = drawn.shape(pair % kShapes);
+    for (int k = 0; k < kPlaces; ++k) {
+      const Vec3 away = k % 2 == 0 ? Vec3(0, 0, 0) : Vec3(600, -800, 1000);
+      const Pose at_a{away, drawn.orientation()};
+      const Pose at_b{away + drawn.place(0.0625 * k), drawn.orientation()};
+      TrackingState state;
+      all.add(distance(a, b, at_a, at_b, state));
+      if (k > 1) continue;
+      const std::vector<PlacedShape> both = {{&a, at_a}, {&b, at_b}};
+      const auto around = enclosing_polyhedron(both, {.facets = 12});
+      if (!around) continue;
+      all.add(*around);
+      const std::vector<PlacedShape> again = {{&*around, at_b}};
+      all.add(enclosing_polyhedron(again, {.facets = 8}).value());
+    }
+  }
+  return all.value();
+}
+
 // Recorded by g++ 12 on x86-64: every compiler, level of optimisation and processor has to find the
 // same.
 TEST(Distance, HasTheSameBitsInEveryBuild) {
   EXPECT_EQ(fingerprint_of_walks(false), 3109342264206936644U);
   EXPECT_EQ(fingerprint_of_walks(true), 922501430640452298U);
+  EXPECT_EQ(fingerprint_of_overlaps(), 12593179251307210366U);
 }
 
 }  // namespace

@@ -369,20 +369,5 @@ TEST(ShareMerge, GradientsOfAllSharesComeInTheOrderOfPairs) {
   EXPECT_EQ(joined()->pairs._length, shares.cell.shares.all[1].pairs.size());
 }
 
-// No daemon sends them. NaN is not less than anything, and not greater.
-TEST(ShareMerge, BoundsOfOneShareThatAreNoNumbersAreNoMinimumOfAll) {
-  const std::vector<std::pair<double, double>> bounds(15, {0.5, 0.5});
-  for (std::size_t share = 0; share < 3; ++share) {
-    Shares shares(bounds);
-    clearance_msg_Distances& report = *shares.reports[share];
-    report.lower_all = report.swept_lower_all = std::nan("");
-    report.minimum.lower = report.minimum.upper = std::nan("");
-    const clearance_msg_Distances& joined = shares.join();
-    EXPECT_EQ(joined.lower_all, -kNone) << share;
-    EXPECT_EQ(joined.swept_lower_all, -kNone) << share;
-    EXPECT_FALSE(joined.minimum_certified) << share;
-  }
-}
-
 }  // namespace
 }  // namespace clearance::client

@@ -15,8 +15,8 @@ namespace {
 using clearance::ReportError;
 namespace client = clearance::client;
 
-// PairStatus and SeparationValidity of monitor/interface/report.hpp. Any other value is unknown.
-constexpr std::uint8_t kCarried = 4, kAbsent = 7, kLastValidity = 3;
+// PairStatus of monitor/interface/report.hpp. Any other value is unknown.
+constexpr std::uint8_t kCarried = 4, kAbsent = 7;
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 constexpr std::chrono::milliseconds kWait(5);
@@ -173,17 +173,15 @@ void PermitReader::limit_by_zones(Permit& permit) {
 // A cell without separation and stops sends none of these messages, so nothing is relied on.
 void PermitReader::limit_by_scaling(Permit& permit) {
   const clearance_msg_Separation& message = **separation_;
-  const auto obey = [&](std::uint8_t validity, double scaling) {
-    const bool is_known = validity > 0 && validity <= kLastValidity && scaling >= 0.0;
-    permit.of_present = std::min(permit.of_present, is_known ? scaling : 0.0);
-  };
+  double& scaling = permit.of_present;
   for (const clearance_msg_ZoneSeparation& zone : list(message.zones))
-    obey(zone.validity, zone.scaling);
-  for (const clearance_msg_RobotStop& stop : list(message.stops)) obey(stop.validity, stop.scaling);
+    scaling = std::min(scaling, zone.scaling);
+  for (const clearance_msg_RobotStop& stop : list(message.stops))
+    scaling = std::min(scaling, stop.scaling);
   if (message.stops._length > 0 && !has_joints(message.scene_revision))
     reduce(permit, 0.0, Cause::kUnknown);
   const std::int64_t age_ns = std::max<std::int64_t>(0, client::now_ns() - message.publish_ns);
-  permit.since_ns = client::monotonic_ns() - age_ns - 2 * message.period_ns;
+  permit.since_ns = client::monotonic_ns() - age_ns - 2 * clearance::stated_period_ns(message);
   if (permit.of_present < 1.0 && permit.cause == Cause::kNone) permit.cause = Cause::kScaling;
 }
 
