@@ -19,6 +19,7 @@
 #include "config/text/file_bytes.hpp"
 #include "monitor/app/log_line.hpp"
 #include "monitor/files/numbered_file.hpp"
+#include "monitor/interface/mutex.hpp"
 
 namespace clearance {
 namespace {
@@ -40,9 +41,9 @@ constexpr std::array kInterventions = {lines::kReading.code,         lines::kSce
                                        lines::kPartnerStands.code,   lines::kOtherDaemonFirst.code,
                                        lines::kSelfTestFailed.code};
 
-// Guards the pointer: a thread of DDS may log while the program ends.
-std::mutex open_mutex;
-InterventionLog* open_log = nullptr;
+// A thread of DDS may log while the program ends.
+Mutex open_mutex;
+GUARDED_BY(open_mutex) InterventionLog* open_log = nullptr;
 
 std::int64_t now_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(
@@ -64,7 +65,7 @@ bool is_intervention(std::string_view code) noexcept {
 
 void note_intervention(std::string_view code, std::string_view text) {
   if (!is_intervention(code)) return;
-  const std::lock_guard lock(open_mutex);
+  const Lock lock(open_mutex);
   if (open_log != nullptr) open_log->note(code, {{"text", text}});
 }
 
@@ -75,17 +76,17 @@ InterventionLog::InterventionLog(std::filesystem::path file, std::uint64_t large
     pthread_setname_np(pthread_self(), "interventions");
     run();
   });
-  const std::lock_guard lock(open_mutex);
+  const Lock lock(open_mutex);
   open_log = this;
 }
 
 InterventionLog::~InterventionLog() {
   {
-    const std::lock_guard lock(open_mutex);
+    const Lock lock(open_mutex);
     open_log = nullptr;
   }
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     is_ending_ = true;
     news_.notify_all();
   }
@@ -124,7 +125,7 @@ void InterventionLog::open() {
 }
 
 void InterventionLog::note(std::string_view kind, const ordered_json& fields) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   if (is_ending_) return;
   waiting_.size() < kMost ? put(kind, fields) : void(++left_out_);
 }
@@ -140,9 +141,9 @@ void InterventionLog::put(std::string_view kind, const ordered_json& fields) {
 
 void InterventionLog::run() {
   bool is_told = false;
-  std::unique_lock lock(mutex_);
+  Lock lock(mutex_);
   while (true) {
-    news_.wait(lock, [this] { return is_ending_ || !waiting_.empty(); });
+    news_.wait(lock, [this]() REQUIRES(mutex_) { return is_ending_ || !waiting_.empty(); });
     if (waiting_.empty()) break;
     // Entries are added at the back only, which leaves the first one in its place.
     const Entry& entry = waiting_.front();
@@ -158,7 +159,7 @@ void InterventionLog::run() {
     is_lost_ = !change.empty();
     if (is_lost_ || (!why.empty() && is_ending_)) break;
     if (!why.empty()) {
-      news_.wait_for(lock, kPause, [this] { return is_ending_; });
+      news_.wait_for(lock, kPause, [this]() REQUIRES(mutex_) { return is_ending_; });
       continue;
     }
     left_out_ -= left_out;
@@ -220,11 +221,11 @@ std::string InterventionLog::write(const Entry& entry, std::uint64_t left_out) {
 }
 
 void InterventionLog::finish(std::string_view kind, const ordered_json& fields) {
-  std::unique_lock lock(mutex_);
+  Lock lock(mutex_);
   put(kind, fields);
   is_ending_ = true;
   news_.notify_all();
-  hangs_ = !news_.wait_for(lock, kPatience, [this] { return has_ended_; });
+  hangs_ = !news_.wait_for(lock, kPatience, [this]() REQUIRES(mutex_) { return has_ended_; });
   complete_ = !hangs_ && waiting_.empty() && left_out_ == 0;
   if (!hangs_) log_line(lines::kInterventions, file_.string(), end_.number, end_.hash);
 }

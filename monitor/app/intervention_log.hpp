@@ -9,13 +9,13 @@
 #include <cstdint>
 #include <deque>
 #include <filesystem>
-#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <string_view>
 #include <thread>
 
 #include "monitor/files/chained_log.hpp"
+#include "monitor/interface/mutex.hpp"
 
 namespace clearance {
 
@@ -63,7 +63,7 @@ class InterventionLog {
   };
   void open();
   void run();
-  void put(std::string_view kind, const nlohmann::ordered_json& fields);
+  void put(std::string_view kind, const nlohmann::ordered_json& fields) REQUIRES(mutex_);
   void begin_next_file();
   // Each returns why it failed; empty: it is done.
   [[nodiscard]] std::string write(const Entry& entry, std::uint64_t left_out);
@@ -75,11 +75,11 @@ class InterventionLog {
   std::uint64_t size_ = 0;  // of the whole lines
   ChainEnd end_;
   std::string continues_;  // fields of the first line of a file that goes on from another
-  std::mutex mutex_;       // guards what follows
+  Mutex mutex_;
   std::condition_variable news_;
-  std::deque<Entry> waiting_;
-  std::uint64_t left_out_ = 0;
-  bool is_ending_ = false, is_lost_ = false, has_ended_ = false;
+  GUARDED_BY(mutex_) std::deque<Entry> waiting_;
+  GUARDED_BY(mutex_) std::uint64_t left_out_ = 0;
+  GUARDED_BY(mutex_) bool is_ending_ = false, is_lost_ = false, has_ended_ = false;
   bool complete_ = false, hangs_ = false;
   std::thread thread_;
 };

@@ -2,11 +2,11 @@
 #pragma once
 
 #include <cstdint>
-#include <mutex>
 #include <utility>
 
 #include "config/text/sentences.hpp"
 #include "monitor/app/log_line.hpp"
+#include "monitor/interface/mutex.hpp"
 
 namespace clearance {
 
@@ -21,7 +21,7 @@ class LineLimit {
   // Returns whether one more line may be logged; `now_ns` is CLOCK_MONOTONIC. The first call in a
   // new second logs how many lines were left out before.
   [[nodiscard]] bool admits(std::int64_t now_ns) {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     const std::int64_t second = now_ns / 1'000'000'000;
     if (std::exchange(second_, second) != second) {
       if (left_out_ > 0) log_line(line_, counted(left_out_, "line"));
@@ -34,9 +34,9 @@ class LineLimit {
 
  private:
   const LogLine<lines::Text>& line_;
-  std::mutex mutex_;
-  std::int64_t second_ = -1;
-  std::uint64_t logged_ = 0, left_out_ = 0;  // in that second
+  Mutex mutex_;
+  GUARDED_BY(mutex_) std::int64_t second_ = -1;
+  GUARDED_BY(mutex_) std::uint64_t logged_ = 0, left_out_ = 0;  // in that second
 };
 
 }  // namespace clearance

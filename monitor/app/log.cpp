@@ -22,13 +22,13 @@
 #include <deque>
 #include <iterator>
 #include <memory>
-#include <mutex>
 #include <string_view>
 #include <thread>
 #include <utility>
 
 #include "config/text/printable.hpp"
 #include "monitor/app/log_line.hpp"
+#include "monitor/interface/mutex.hpp"
 
 namespace clearance {
 namespace {
@@ -169,10 +169,10 @@ constexpr spdlog::level::level_enum kLevels[] = {spdlog::level::info, spdlog::le
 
 // Lines for kept_lines().
 struct KeptLines {
-  std::mutex mutex;
-  std::size_t most = 0;
-  std::string name = "clearance";
-  std::deque<LoggedLine> lines;
+  Mutex mutex;
+  GUARDED_BY(mutex) std::size_t most = 0;
+  GUARDED_BY(mutex) std::string name = "clearance";
+  GUARDED_BY(mutex) std::deque<LoggedLine> lines;
 };
 KeptLines& kept() {
   static KeptLines lines;
@@ -180,7 +180,7 @@ KeptLines& kept() {
 }
 
 void keep(LogLevel level, const std::string& line) {
-  const std::lock_guard lock(kept().mutex);
+  const Lock lock(kept().mutex);
   if (kept().most == 0) return;
   const auto since = std::chrono::system_clock::now().time_since_epoch();
   if (kept().lines.size() >= kept().most) kept().lines.pop_front();
@@ -195,7 +195,7 @@ std::weak_ptr<QueueSink> the_log;
 
 void start_log(const std::string& name, const std::string& level) {
   {
-    const std::lock_guard lock(kept().mutex);
+    const Lock lock(kept().mutex);
     kept().name = name;
   }
   auto sink = std::make_shared<QueueSink>(name);
@@ -216,17 +216,17 @@ void log_text(LogLevel level, std::string_view text, std::string_view code) {
 }
 
 void keep_lines(std::size_t most) {
-  const std::lock_guard lock(kept().mutex);
+  const Lock lock(kept().mutex);
   kept().most = most;
 }
 
 std::string log_name() {
-  const std::lock_guard lock(kept().mutex);
+  const Lock lock(kept().mutex);
   return kept().name;
 }
 
 std::vector<LoggedLine> kept_lines() {
-  const std::lock_guard lock(kept().mutex);
+  const Lock lock(kept().mutex);
   std::vector<LoggedLine> lines(std::make_move_iterator(kept().lines.begin()),
                                 std::make_move_iterator(kept().lines.end()));
   kept().lines.clear();

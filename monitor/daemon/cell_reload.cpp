@@ -30,7 +30,7 @@ void CellReload::poll() {
 bool CellReload::have_files_changed() {
   std::optional<std::vector<std::filesystem::path>> read;
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     read = std::exchange(read_files_, std::nullopt);
   }
   if (read) watch(*std::move(read));
@@ -68,7 +68,7 @@ void CellReload::answer(const CommandResult& result) {
                   "the changed cell was refused: see the log");
   }
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     read_files_ = actions_.files();
   }
   const bool is_new = actions_.note_change(result);

@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <functional>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <vector>
@@ -12,6 +11,7 @@
 #include "monitor/daemon/file_watch.hpp"
 #include "monitor/daemon/service_manager.hpp"
 #include "monitor/interface/command.hpp"
+#include "monitor/interface/mutex.hpp"
 #include "monitor/requests/scene_task.hpp"
 
 namespace clearance {
@@ -50,9 +50,10 @@ class CellReload {
   ServiceManager& service_;
   const Actions actions_;
   FileWatch watch_;
-  bool is_due_ = false;                                           // it could not be read yet
-  std::mutex mutex_;                                              // guards the next one
-  std::optional<std::vector<std::filesystem::path>> read_files_;  // of the cell that was read again
+  bool is_due_ = false;  // it could not be read yet
+  Mutex mutex_;
+  // Of the cell that was read again.
+  GUARDED_BY(mutex_) std::optional<std::vector<std::filesystem::path>> read_files_;
 };
 
 }  // namespace clearance

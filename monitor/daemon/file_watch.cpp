@@ -15,7 +15,7 @@ FileWatch::Look FileWatch::look_at(const std::filesystem::path& file) {
 }
 
 void FileWatch::watch(const std::vector<std::filesystem::path>& files) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   std::map<std::filesystem::path, Look> now;
   for (const std::filesystem::path& file : files) {
     const auto before = known_.find(file);
@@ -26,7 +26,7 @@ void FileWatch::watch(const std::vector<std::filesystem::path>& files) {
 }
 
 bool FileWatch::changed() {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   std::map<std::filesystem::path, Look> now;
   for (const auto& [file, look] : known_) now.emplace(file, look_at(file));
   const bool is_settled = now == last_;

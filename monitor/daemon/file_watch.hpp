@@ -4,8 +4,9 @@
 #include <cstdint>
 #include <filesystem>
 #include <map>
-#include <mutex>
 #include <vector>
+
+#include "monitor/interface/mutex.hpp"
 
 namespace clearance {
 
@@ -28,8 +29,8 @@ class FileWatch {
   };
   [[nodiscard]] static Look look_at(const std::filesystem::path& file);
 
-  std::mutex mutex_;
-  std::map<std::filesystem::path, Look> known_, last_;
+  Mutex mutex_;
+  GUARDED_BY(mutex_) std::map<std::filesystem::path, Look> known_, last_;
 };
 
 }  // namespace clearance

@@ -14,7 +14,7 @@
 namespace clearance {
 
 void MoveItPort::take(moveit::RawScene message) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   if (!put_) return;
   const auto shared = std::make_shared<const moveit::RawScene>(std::move(message));
   if (!sharing_) {
@@ -39,7 +39,7 @@ void MoveItPort::log_refusal(const std::string& topic, const std::string& path,
 }
 
 void MoveItPort::close() {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   put_ = nullptr;
 }
 
@@ -107,7 +107,7 @@ bool MoveItPort::is_done(std::uint64_t command) {
 void MoveItPort::took_over(std::uint64_t revision) {
   if (!sharing_) return;
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     const auto done = changes_until(heard_.changes, revision);
     changes_.assign(done.begin(), done.end());
     turns_.go_on_from(changes_);
@@ -118,12 +118,12 @@ void MoveItPort::took_over(std::uint64_t revision) {
 void MoveItPort::hear(const clearance_msg_PartnerScene& scene) {
   const std::span changes(scene.changes._buffer, scene.changes._length);
   const auto bytes = std::as_bytes(std::span(scene.bytes._buffer, scene.bytes._length));
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   heard_ = {{changes.begin(), changes.end()}, {bytes.begin(), bytes.end()}, true};
 }
 
 void MoveItPort::update_lead() {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   if (!sharing_ || !put_) return;
   const bool led = std::exchange(leads_, leads());
   if (!leads_) {
@@ -156,7 +156,7 @@ void MoveItPort::keep_files() {
     std::vector<SentFile> files;
     std::vector<SceneTurns::Message> messages;
     {
-      const std::lock_guard lock(mutex_);
+      const Lock lock(mutex_);
       messages = turns_.to_keep();
       if (!sharing_->leads) turns_ = {};
       keeps_ = false;
@@ -176,7 +176,7 @@ void MoveItPort::keep_files() {
 // By its turn the partner may lead, or have done the message before it fell silent.
 bool MoveItPort::begins(std::uint64_t identity, std::uint64_t revision) {
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     turns_.drop_done(heard_.changes, revision);
     const bool does_it = leads();
     if (!does_it) turns_.put_back(identity);
@@ -191,7 +191,7 @@ bool MoveItPort::begins(std::uint64_t identity, std::uint64_t revision) {
 // force here. If that leader never had the scene in force here, only this daemon knows what led to
 // it, even if an earlier scene was the same.
 void MoveItPort::go_on_from_heard(std::uint64_t revision) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   if (!std::exchange(heard_.is_new, false)) return;
   static_cast<void>(keeper_.restore(heard_.bytes));
   const auto done = changes_until(heard_.changes, revision);
@@ -205,7 +205,7 @@ void MoveItPort::go_on_from_heard(std::uint64_t revision) {
 void MoveItPort::ended(std::uint64_t identity, std::uint64_t revision) {
   current_ = 0;
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     turns_.end(identity, sharing_->both_have != nullptr);
   }
   note(identity, revision);

@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,6 +14,7 @@
 #include "monitor/app/line_limit.hpp"
 #include "monitor/daemon/scene_turns.hpp"
 #include "monitor/intake/scene_keeper.hpp"
+#include "monitor/interface/mutex.hpp"
 #include "monitor/requests/scene_task.hpp"
 
 namespace clearance {
@@ -70,10 +70,9 @@ class MoveItPort {
   [[nodiscard]] Command translated(const moveit::RawScene& message, const Cell& cell,
                                    const AskPose& pose);
   void log_refusal(const std::string& topic, const std::string& path, const std::string& reason);
-  // With the mutex held.
-  [[nodiscard]] bool leads() const { return sharing_->leads && sharing_->leads(); }
-  void put_waiting();
-  void keep_files();
+  [[nodiscard]] bool leads() const REQUIRES(mutex_) { return sharing_->leads && sharing_->leads(); }
+  void put_waiting() REQUIRES(mutex_);
+  void keep_files() REQUIRES(mutex_);
   // In the scene thread.
   [[nodiscard]] bool begins(std::uint64_t identity, std::uint64_t revision);
   void go_on_from_heard(std::uint64_t revision);
@@ -83,11 +82,12 @@ class MoveItPort {
 
   LineLimit refusal_lines_{lines::kMoveItLinesLeftOut}, left_out_lines_{lines::kMoveItLinesLeftOut};
   std::optional<Sharing> sharing_;  // none: this daemon applies all messages at once
-  std::mutex mutex_;                // guards what follows
-  Put put_;                         // empty: closed
-  SceneTurns turns_;
-  Heard heard_;                         // from another leader, the last one
-  bool leads_ = false, keeps_ = false;  // when last looked at; a command to keep files waits
+  Mutex mutex_;
+  GUARDED_BY(mutex_) Put put_;  // empty: closed
+  GUARDED_BY(mutex_) SceneTurns turns_;
+  GUARDED_BY(mutex_) Heard heard_;  // from another leader, the last one
+  // When last looked at; a command to keep files waits.
+  GUARDED_BY(mutex_) bool leads_ = false, keeps_ = false;
   // For the scene thread.
   moveit::SceneKeeper keeper_;
   // The changes that led to the scene in force, by whichever daemon led; then those to come.

@@ -108,7 +108,7 @@ Recording::~Recording() { finish(); }
 void Recording::finish() {
   if (!thread_.joinable()) return;
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     parts_.back()->queue.close();
   }
   wait_for_the_disk();
@@ -135,7 +135,7 @@ void Recording::wait_for_the_disk() const {
 
 ReportSink* Recording::prepare(std::shared_ptr<const Cell> cell) {
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     if (parts_.size() >= kMostWaiting) {
       fail(fmt::format("the disk is too slow: {} changes of the cell wait for it", kMostWaiting));
     }
@@ -146,7 +146,7 @@ ReportSink* Recording::prepare(std::shared_ptr<const Cell> cell) {
 }
 
 void Recording::follow(const SceneInForce& since) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   parts_.back()->queue.close();
   if (!prepared_) return;
   prepared_->since = since;
@@ -162,7 +162,7 @@ void Recording::run() {
   do {
     Part* part = nullptr;
     {
-      const std::lock_guard lock(mutex_);
+      const Lock lock(mutex_);
       part = parts_.front().get();
     }
     for (bool closed = false; !closed;) {
@@ -180,14 +180,14 @@ void Recording::run() {
 bool Recording::next_part() {
   Part* next = nullptr;
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     if (parts_.size() == 1) return false;
     next = parts_[1].get();
   }
   recorder_.change(*next->cell, next->since);
   tell_of_missing_files();
   count(0);
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   reports_dropped_before_ += parts_.front()->queue.dropped_reports();
   inputs_dropped_before_ += parts_.front()->queue.dropped_inputs();
   parts_.pop_front();
@@ -249,7 +249,7 @@ void Recording::record_frames(std::uint64_t cycle) {
 void Recording::note_state(const PartnerStateView& state) {
   CdrEncoder encoder;
   const auto cdr = encoder.encode(*to_wire(state, kBuild));
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   states_.emplace_back(state.lineage, std::vector(cdr.begin(), cdr.end()));
   if (states_.size() > kMostStates) states_.pop_front();
 }
@@ -257,7 +257,7 @@ void Recording::note_state(const PartnerStateView& state) {
 // States before it were not taken over. One that is missing here, since the disk is too slow for
 // the reports between, is missing for a replay as well.
 void Recording::record_state(std::uint64_t lineage) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   const auto state = std::ranges::find(states_, lineage, [](const auto& one) { return one.first; });
   const bool is_there = state != states_.end();
   recorder_.joined(is_there ? std::span<const std::byte>(state->second)
@@ -293,7 +293,7 @@ void Recording::fail(const std::string& why) {
 
 // Reports and batches that found a queue full.
 std::pair<std::uint64_t, std::uint64_t> Recording::dropped() const {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   std::pair sum(reports_dropped_before_, inputs_dropped_before_);
   for (const auto& part : parts_) {
     sum.first += part->queue.dropped_reports();

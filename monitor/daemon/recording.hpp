@@ -7,7 +7,6 @@
 #include <deque>
 #include <filesystem>
 #include <memory>
-#include <mutex>
 #include <stdexcept>
 #include <string>
 #include <thread>
@@ -17,6 +16,7 @@
 #include "config/cell/cell.hpp"
 #include "monitor/daemon/frame_uses.hpp"
 #include "monitor/dds/pose_reader.hpp"
+#include "monitor/interface/mutex.hpp"
 #include "monitor/loop/report_queue.hpp"
 #include "monitor/loop/response_times.hpp"
 #include "monitor/publish/recording_health.hpp"
@@ -47,7 +47,10 @@ class Recording {
   Recording& operator=(const Recording&) = delete;
 
   // Takes the reports of the first cell.
-  [[nodiscard]] ReportSink& sink() noexcept { return parts_.front()->queue; }
+  [[nodiscard]] ReportSink& sink() noexcept {
+    const Lock lock(mutex_);
+    return parts_.front()->queue;
+  }
   // Takes the frames of sensors that ticks are shown, of every cell. It stands before that sink.
   [[nodiscard]] ReportSink& frames() noexcept { return uses_; }
   // The cell may change: returns the sink of the changed one. Null if the disk is so slow that the
@@ -115,11 +118,12 @@ class Recording {
   RecordingHealth& health_;
   const ResponseTimes* const responses_;  // null: not known
   // States that the loop went on from, or may go on from, by lineage: the last kMostStates.
-  std::deque<std::pair<std::uint64_t, std::vector<std::byte>>> states_;
-  mutable std::mutex mutex_;  // guards the one above, and the next two
+  GUARDED_BY(mutex_) std::deque<std::pair<std::uint64_t, std::vector<std::byte>>> states_;
+  mutable Mutex mutex_;
   // The first one is being recorded, and the loop writes to the last one.
-  std::deque<std::unique_ptr<Part>> parts_;
-  std::uint64_t reports_dropped_before_ = 0, inputs_dropped_before_ = 0;  // by queues that are gone
+  GUARDED_BY(mutex_) std::deque<std::unique_ptr<Part>> parts_;
+  // By queues that are gone.
+  GUARDED_BY(mutex_) std::uint64_t reports_dropped_before_ = 0, inputs_dropped_before_ = 0;
   std::unique_ptr<Part> prepared_;
   std::atomic<bool> command_came_{false};
   std::atomic<bool> failing_{false};  // the first one to set it says why

@@ -170,7 +170,7 @@ void ShareScenes::note_told(const Heard& heard) {
 
 // One command waits at a time. It takes over the scene that was heard last.
 void ShareScenes::take_over(const Heard& heard) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   wanted_ = {heard.share, heard.last->scene_revision, heard.last->cell_yaml};
   if (!is_queued_) is_queued_ = actions_.put(command());
 }
@@ -180,7 +180,7 @@ MadeCommand ShareScenes::command() {
   const auto doing = std::make_shared<Wanted>();
   MadeCommand made{.sender = "shares"};
   made.make = [this, doing](const Cell& cell, const AskPose&) {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     is_queued_ = false;
     *doing = wanted_;
     const bool has_it = cell.scene.revision == doing->revision;

@@ -8,7 +8,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <set>
 #include <string>
@@ -17,6 +16,7 @@
 
 #include "config/cell/cell.hpp"
 #include "monitor/client/checked_reader.hpp"
+#include "monitor/interface/mutex.hpp"
 #include "monitor/participant/participant.hpp"
 #include "monitor/requests/scene_task.hpp"
 #include "monitor/wire/dds_sample.hpp"
@@ -122,9 +122,9 @@ class ShareScenes {
   Sample<clearance_msg_Catalogue> taken_;
   SceneToFollow to_follow_;
   std::unique_ptr<DataWait> wait_;
-  std::mutex mutex_;  // guards the next two
-  Wanted wanted_;     // the scene that a queued command takes over
-  bool is_queued_ = false;
+  Mutex mutex_;
+  GUARDED_BY(mutex_) Wanted wanted_;  // the scene that a queued command takes over
+  GUARDED_BY(mutex_) bool is_queued_ = false;
   std::uint64_t refused_ = 0;  // the last scene that was refused; for the scene thread
   std::atomic<bool> has_changed_{false}, does_messages_{false}, stop_{false};
   std::thread thread_;

@@ -108,7 +108,7 @@ void TrajectoryPort::write(const Topic& topic, const QuestionResult& result) {
   const DiagnosticText status = motion_status(topic.name, result);
   const auto diagnostics = diagnostic_array(cell_, {&status, 1}, dds_time());
   const std_msgs_msg_dds__Float64_ lower{result.lower};
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   if (!writes_.may_write()) return;
   writes_.write(diagnostics_, &*diagnostics);
   writes_.write(topic.number, &lower);

@@ -6,12 +6,12 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
 
 #include "config/cell/ros_settings.hpp"
+#include "monitor/interface/mutex.hpp"
 #include "monitor/participant/cdr_sample.hpp"
 #include "monitor/participant/participant.hpp"
 #include "monitor/publish/ros_writes.hpp"
@@ -53,8 +53,8 @@ class TrajectoryPort {
   dds_entity_t diagnostics_;
   std::unique_ptr<DataWait> wait_;
   std::vector<CdrSample> taken_;
-  std::mutex mutex_;  // guards writes_: answers come from several threads
-  RosWrites writes_;
+  Mutex mutex_;  // answers come from several threads
+  GUARDED_BY(mutex_) RosWrites writes_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

@@ -19,7 +19,7 @@ dds_topic_filter filter_of(NameLimit& names) noexcept {
 }
 
 bool NameLimit::admits(std::uint64_t writer, std::uint64_t name, std::int64_t monotonic_ns) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   Writer& of = writers_[writer];
   const auto known = std::ranges::find(of.names, name, &Name::handle);
   if (known != of.names.end()) {
@@ -39,21 +39,21 @@ bool NameLimit::admits(std::uint64_t writer, std::uint64_t name, std::int64_t mo
 }
 
 void NameLimit::forget_name(std::uint64_t name) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   for (auto& [handle, writer] : writers_) {
     writer.in_all -= std::erase_if(writer.names, [&](const Name& n) { return n.handle == name; });
   }
 }
 
 void NameLimit::keep(std::span<const std::uint64_t> writers) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   std::erase_if(writers_, [&](const auto& writer) {
     return std::ranges::find(writers, writer.first) == writers.end();
   });
 }
 
 std::uint64_t NameLimit::refused() const {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   return refused_;
 }
 

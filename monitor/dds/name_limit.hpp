@@ -10,9 +10,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <map>
-#include <mutex>
 #include <span>
 #include <vector>
+
+#include "monitor/interface/mutex.hpp"
 
 namespace clearance {
 
@@ -44,9 +45,9 @@ class NameLimit {
     std::vector<Name> names;
     std::size_t in_all = 0;
   };
-  mutable std::mutex mutex_;
-  std::map<std::uint64_t, Writer> writers_;
-  std::uint64_t refused_ = 0;
+  mutable Mutex mutex_;
+  GUARDED_BY(mutex_) std::map<std::uint64_t, Writer> writers_;
+  GUARDED_BY(mutex_) std::uint64_t refused_ = 0;
 };
 
 // A filter for a reader: Cyclone asks it before it stores a sample, with the name's instance handle

@@ -29,7 +29,7 @@ bool PartnerReports::may_tell(Kind kind) {
 }
 
 void PartnerReports::note(const clearance_msg_Distances& report, bool is_other) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   const Kept kept{report.cycle,
                   report.lineage,
                   compared_checksum(report),
@@ -74,7 +74,7 @@ void PartnerReports::compare(const Kept& own, const Kept& other) {
 
 // Any field of a corrupt report may be wrong, even the name, so none is kept.
 void PartnerReports::note_corrupt(const clearance_msg_Distances& report) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   ++different_;
   agrees_from_ = 0;
   if (may_tell(kCorrupt))
@@ -93,28 +93,28 @@ void PartnerReports::look_for_missing(std::uint64_t cycle) {
 }
 
 bool PartnerReports::hears_any(std::int64_t within_ns) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   return heard_ns_ != 0 && SystemClock().monotonic_ns() - heard_ns_ < within_ns;
 }
 
 bool PartnerReports::disagrees() {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   return agrees_from_ == 0 && heard_ns_ != 0;
 }
 
 std::string PartnerReports::name() {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   return name_;
 }
 
 bool PartnerReports::hears_another(const std::string& partner) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   return heard_ns_ != 0 && name_ != partner &&
          SystemClock().monotonic_ns() - heard_ns_ < kLateAfterNs;
 }
 
 void PartnerReports::fill(clearance_msg_PartnerHealth& out) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   copy_name(name_, out.other);
   out.other_publishes = heard_ns_ != 0 && SystemClock().monotonic_ns() - heard_ns_ < kTellAgainNs;
   out.agrees_from = agrees_from_;

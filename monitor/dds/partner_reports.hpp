@@ -3,10 +3,10 @@
 
 #include <array>
 #include <cstdint>
-#include <mutex>
 #include <string>
 #include <vector>
 
+#include "monitor/interface/mutex.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
 namespace clearance {
@@ -45,18 +45,19 @@ class PartnerReports {
   enum Kind : std::uint8_t { kAgrees, kOtherInputs, kDifferent, kMissing, kCorrupt, kKinds };
 
   void note(const clearance_msg_Distances& report, bool is_other);
-  void compare(const Kept& own, const Kept& other);
-  void look_for_missing(std::uint64_t cycle);
-  [[nodiscard]] bool may_tell(Kind kind);
+  void compare(const Kept& own, const Kept& other) REQUIRES(mutex_);
+  void look_for_missing(std::uint64_t cycle) REQUIRES(mutex_);
+  [[nodiscard]] bool may_tell(Kind kind) REQUIRES(mutex_);
 
-  std::mutex mutex_;
-  Cycles own_{}, other_{};
-  std::string name_;  // the partner's
-  std::int64_t heard_ns_ = 0;
-  std::uint64_t agrees_from_ = 0, compared_ = 0, different_ = 0, other_inputs_ = 0, missing_ = 0;
-  std::vector<std::int64_t> phases_;  // since the last fill()
-  std::int64_t phase_ns_ = 0;
-  std::array<std::int64_t, kKinds> told_ns_{};
+  Mutex mutex_;
+  GUARDED_BY(mutex_) Cycles own_{}, other_{};
+  GUARDED_BY(mutex_) std::string name_;  // the partner's
+  GUARDED_BY(mutex_) std::int64_t heard_ns_ = 0;
+  GUARDED_BY(mutex_) std::uint64_t agrees_from_ = 0, compared_ = 0, different_ = 0;
+  GUARDED_BY(mutex_) std::uint64_t other_inputs_ = 0, missing_ = 0;
+  GUARDED_BY(mutex_) std::vector<std::int64_t> phases_;  // since the last fill()
+  GUARDED_BY(mutex_) std::int64_t phase_ns_ = 0;
+  GUARDED_BY(mutex_) std::array<std::int64_t, kKinds> told_ns_{};
 };
 
 }  // namespace clearance

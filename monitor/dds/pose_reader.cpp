@@ -83,7 +83,7 @@ PoseReader::PoseReader(const Cell& cell, Participant& participant, MoveItMessage
                .most_joints = joints_a_batch(cell),
                .use_scene = std::move(use_scene),
                .time = time,
-               .writer_name = [this](std::uint64_t writer) { return guid_of(writer); }},
+               .writer_name = [this](auto writer) REQUIRES(mutex_) { return guid_of(writer); }},
               [this](PoseBatch& batch) { return hand_over(batch); }),
       ros_(participant, intake_),
       wait_(participant, {}),
@@ -105,7 +105,7 @@ void PoseReader::start() {
 
 void PoseReader::change(const Cell& cell) {
   if (sensors_) sensors_->change(cell);
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   topics_ = &cell.topics;
   intake_.change(cell);
   ros_.stand();
@@ -146,17 +146,17 @@ const PoseBatch* PoseReader::next() noexcept {
 
 // Returns a copy, because the taking thread continues to change the tallies.
 std::vector<SourceTally> PoseReader::tallies() const {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   return intake_.sources().tallies();
 }
 
 std::vector<RefusedSource> PoseReader::refused_sources() const {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   return intake_.sources().refused();
 }
 
 SourceTally PoseReader::departed() const {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   return intake_.sources().departed();
 }
 
@@ -165,7 +165,7 @@ std::uint64_t PoseReader::undecodable() const {
 }
 
 std::string PoseReader::senders_of_joints() const {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   const std::size_t own = own_.size() < 2 ? 0 : writers_of(own_.back().handle).size();
   const std::size_t heard = own + intake_.joint_states().writers();
   if (heard > 0) {
@@ -199,10 +199,13 @@ std::string PoseReader::senders_of_joints() const {
 void PoseReader::run() {
   name_thread("poses");
   SystemClock clock;
+  Lock lock(mutex_);
   while (!stop_) {
-    wait_.wait(intake_.patience_ns());
+    const std::int64_t patience = intake_.patience_ns();
+    lock.unlock();
+    wait_.wait(patience);
+    lock.lock();
     if (stop_) return;
-    const std::lock_guard lock(mutex_);
     try {
       poll();
       take_all({.realtime_ns = clock.realtime_ns(), .monotonic_ns = clock.monotonic_ns()});

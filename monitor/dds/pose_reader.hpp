@@ -7,7 +7,6 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
@@ -17,6 +16,7 @@
 #include "monitor/dds/ros_readers.hpp"
 #include "monitor/dds/sensor_reader.hpp"
 #include "monitor/intake/intake.hpp"
+#include "monitor/interface/mutex.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/participant/participant.hpp"
 #include "monitor/tick/spsc_ring.hpp"
@@ -98,27 +98,26 @@ class PoseReader final : public PoseSource {
     std::uint32_t topic;
   };
 
-  void open(Participant& participant, TopicKind kind);
+  void open(Participant& participant, TopicKind kind) REQUIRES(mutex_);
   void run();
-  void poll();
-  void note_writers();
-  void take_all(const Now& now);
+  void poll() REQUIRES(mutex_);
+  void note_writers() REQUIRES(mutex_);
+  void take_all(const Now& now) REQUIRES(mutex_);
   bool hand_over(PoseBatch& batch) noexcept;
-  void log_news();
-  [[nodiscard]] std::string guid_of(std::uint64_t writer) const;
+  void log_news() REQUIRES(mutex_);
+  [[nodiscard]] std::string guid_of(std::uint64_t writer) const REQUIRES(mutex_);
 
-  const Topics* topics_;
+  GUARDED_BY(mutex_) const Topics* topics_;
   std::uint64_t undecodable_before_;
   NameLimit names_;
   std::atomic<bool> writers_changed_{false};
   std::string where_, partition_;
-  // Guards the intake, and what `ros_` knows of other programs. The taking and the publishing
-  // thread use it, never the tick thread.
-  mutable std::mutex mutex_;
+  // The taking and the publishing thread use it, never the tick thread.
+  mutable Mutex mutex_;
   std::unique_ptr<SensorReader> sensors_;  // null: the cell has none
-  Intake intake_;
+  GUARDED_BY(mutex_) Intake intake_;
   std::vector<OwnReader> own_;
-  RosReaders ros_;
+  GUARDED_BY(mutex_) RosReaders ros_;
   DataWait wait_;
   std::size_t waited_for_ = 0;  // number of readers of ROS 2's topics in `wait_`
   std::vector<CdrSample> taken_;

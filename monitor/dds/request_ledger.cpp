@@ -31,7 +31,7 @@ template <class Result>
 std::optional<Result> RequestLedger<Result>::refuse_sender(const Request& request,
                                                            std::uint64_t writer) {
   using Status = decltype(Result::status);
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   const auto client = clients_.find(request.client);
   if (client == clients_.end()) {
     return refusal<Result>(request, Status::kNotNamed,
@@ -59,7 +59,7 @@ std::optional<Result> RequestLedger<Result>::refuse_sender(const Request& reques
 template <class Result>
 typename RequestLedger<Result>::Verdict RequestLedger<Result>::admit(const Request& request) {
   using Status = decltype(Result::status);
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   Client& client = clients_[request.client];
   const auto known = std::ranges::find(client.known, request.number, &Known::number);
   if (known != client.known.end()) {
@@ -89,7 +89,7 @@ typename RequestLedger<Result>::Verdict RequestLedger<Result>::admit(const Reque
 
 template <class Result>
 void RequestLedger<Result>::answer(const Result& result) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   Client& client = clients_[result.client];
   const auto known = std::ranges::find(client.known, result.request, &Known::number);
   if (known != client.known.end()) known->result = result;
@@ -97,7 +97,7 @@ void RequestLedger<Result>::answer(const Result& result) {
 
 template <class Result>
 void RequestLedger<Result>::withdraw(const Request& request) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   Client& client = clients_[request.client];
   std::erase_if(client.known, [&](const Known& known) {
     if (known.number != request.number || known.result) return false;
@@ -108,7 +108,7 @@ void RequestLedger<Result>::withdraw(const Request& request) {
 
 template <class Result>
 void RequestLedger<Result>::keep_writers(std::span<const std::uint64_t> writers) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   for (auto& [name, client] : clients_) {
     std::erase_if(client.writers, [&](std::uint64_t each) {
       return std::ranges::find(writers, each) == writers.end();

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <deque>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,6 +13,7 @@
 
 #include "monitor/interface/command.hpp"
 #include "monitor/interface/motion_question.hpp"
+#include "monitor/interface/mutex.hpp"
 
 namespace clearance {
 
@@ -71,8 +71,8 @@ class RequestLedger {
     std::uint64_t last = 0;        // the largest number of this writer
   };
   const std::string key_, expected_;  // expected: "'planner' or 'operator'"
-  std::mutex mutex_;
-  std::map<std::string, Client> clients_;
+  Mutex mutex_;
+  GUARDED_BY(mutex_) std::map<std::string, Client> clients_;
 };
 
 extern template class RequestLedger<CommandResult>;

@@ -202,7 +202,7 @@ template <class Traffic>
 void RequestPort<Traffic>::write(const Result& result) {
   auto message = to_wire(result, daemon_);
   seal(*message, address_);
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   dds_write(results_, &*message);
 }
 

@@ -5,7 +5,6 @@
 #include <atomic>
 #include <cstdint>
 #include <functional>
-#include <mutex>
 #include <set>
 #include <string>
 #include <thread>
@@ -15,6 +14,7 @@
 #include "monitor/app/line_limit.hpp"
 #include "monitor/dds/name_limit.hpp"
 #include "monitor/dds/request_ledger.hpp"
+#include "monitor/interface/mutex.hpp"
 #include "monitor/participant/cdr_sample.hpp"
 #include "monitor/participant/command_message.hpp"
 #include "monitor/participant/lapsed_writers.hpp"
@@ -92,11 +92,12 @@ class RequestPort {
   Ledger ledger_;
   NameLimit names_;
   std::set<std::string> strangers_;  // clients that are not named and were answered
-  std::mutex mutex_;                 // of results, which also come from other threads
   LineLimit refusal_lines_;
   LapsedWriters lapsed_;
-  dds_entity_t reader_, results_;
-  std::uint64_t address_;  // of the results
+  dds_entity_t reader_;
+  Mutex mutex_;
+  GUARDED_BY(mutex_) dds_entity_t results_;  // which also come from other threads
+  std::uint64_t address_;                    // of the results
   DataWait wait_;
   std::vector<CdrSample> taken_;
   std::vector<std::uint64_t> ended_;

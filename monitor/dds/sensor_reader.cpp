@@ -34,7 +34,7 @@ SensorReader::SensorReader(const Cell& cell, Participant& participant, Simulated
       sensors_(std::make_unique<Sensors>(cell, SensorsOptions{})),
       intake_(cell,
               {.use_sensor =
-                   [this](const RawSensorMessage& message) {
+                   [this](const RawSensorMessage& message) REQUIRES(mutex_) {
                      sensors_->add(message, {time_ns(), now_ns_});
                    },
                .only_sensors = true,
@@ -63,24 +63,27 @@ SensorReader::~SensorReader() {
 
 void SensorReader::share_frames(const Topics& topics, const DaemonIdentity& identity,
                                 const TickPartner& ticks) {
+  const Lock lock(mutex_);
   partner_ = std::make_unique<PartnerFrames>(participant_, topics, identity, ticks);
   wait_.add(partner_->reader());
 }
 
 void SensorReader::end_sharing() {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   partner_ = nullptr;
 }
 
 void SensorReader::start() {
-  if (records_ || partner_) sensors_->keep([this](BuiltFrame frame) { keep(std::move(frame)); });
+  const Lock lock(mutex_);
+  if (records_ || partner_)
+    sensors_->keep([this](BuiltFrame frame) REQUIRES(mutex_) { keep(std::move(frame)); });
   thread_ = std::thread([this] { run(); });
 }
 
 // Frames of the cell before are not shown any more (FrameExchange). A monitor that takes over for
 // the same cell goes on with the frames in use.
 void SensorReader::change(const Cell& cell) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   if (&cell == cell_) return;
   SceneMap map = scene_map(cell_->scene, cell.scene);
   ids_.change(cell.scene.revision, map);
@@ -105,7 +108,7 @@ void SensorReader::note(const PoseBatch& batch) {
 
 // The cloud of the last frame is not built anew, even if the tick has refused it.
 std::vector<SeenFrame> SensorReader::copies(std::uint64_t scene_revision) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   std::vector<SeenFrame> seen;
   for (std::uint32_t i = 0; i < last_.size(); ++i) {
     Last& last = last_[i];
@@ -120,7 +123,7 @@ std::vector<SeenFrame> SensorReader::copies(std::uint64_t scene_revision) {
 }
 
 std::vector<SensorStatus> SensorReader::statuses() const {
-  const std::lock_guard lock(status_mutex_);
+  const Lock lock(status_mutex_);
   return statuses_;
 }
 
@@ -131,7 +134,7 @@ void SensorReader::run() {
   for (std::int64_t patience = kIdleNs; !stop_;) {
     wait_.wait(patience);
     if (stop_) return;
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     now_ns_ = clock.monotonic_ns();
     try {
       poll();
@@ -188,7 +191,7 @@ void SensorReader::take_all() {
       [&](std::uint32_t sensor, std::uint64_t content) {
         if (sensor < sensors) frames_.note_built(sensor, content);
       },
-      [&](BuiltFrame frame, std::uint64_t content) {
+      [&](BuiltFrame frame, std::uint64_t content) REQUIRES(mutex_) {
         if (frame.sensor < sensors) sent_[frame.sensor] = {content, std::move(frame)};
       });
 }
@@ -219,8 +222,8 @@ void SensorReader::use(std::uint32_t sensor, SensorFrame frame) {
 void SensorReader::build_own() {
   is_shared_ = false;  // also if the last shared frame found no memory
   sensors_->settle(
-      now_ns_, [this](const SeenCloud* cloud) { return is_used(cloud); },
-      [this](std::uint32_t sensor, const SensorFrame& frame) { use(sensor, frame); });
+      now_ns_, [this](const SeenCloud* cloud) REQUIRES(mutex_) { return is_used(cloud); },
+      [this](auto sensor, const SensorFrame& frame) REQUIRES(mutex_) { use(sensor, frame); });
 }
 
 // The partner shows a frame only when the answer has come. One of another content, since earlier
@@ -229,12 +232,12 @@ void SensorReader::build_shared() {
   is_shared_ = true;
   sensors_->drop_waiting();
   for (std::uint32_t sensor = 0; sensor < sent_.size(); ++sensor) {
-    const auto in_use = [this](const SeenCloud* cloud) { return is_used(cloud); };
+    const auto in_use = [this](const SeenCloud* cloud) REQUIRES(mutex_) { return is_used(cloud); };
     if (sent_[sensor].content == 0 || !sensors_->has_room(sensor, in_use)) continue;
     const Sent sent = std::exchange(sent_[sensor], {});
     std::uint64_t built = 0;
-    const bool is_built =
-        sensors_->rebuild(sent.frame, in_use, [&](std::uint32_t of, const SensorFrame& frame) {
+    const bool is_built = sensors_->rebuild(
+        sent.frame, in_use, [&](std::uint32_t of, const SensorFrame& frame) REQUIRES(mutex_) {
           built = content_;
           use(of, frame);
         });
@@ -250,7 +253,7 @@ void SensorReader::build() {
   } else {
     build_shared();
   }
-  const std::lock_guard lock(status_mutex_);
+  const Lock lock(status_mutex_);
   statuses_.resize(cell_->scene.sensors.size());
   for (std::uint32_t i = 0; i < statuses_.size(); ++i) statuses_[i] = sensors_->status(i);
 }

@@ -8,7 +8,6 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
@@ -18,6 +17,7 @@
 #include "monitor/dds/ros_readers.hpp"
 #include "monitor/inputs/scene_ids.hpp"
 #include "monitor/intake/intake.hpp"
+#include "monitor/interface/mutex.hpp"
 #include "monitor/interface/question.hpp"
 #include "monitor/participant/participant.hpp"
 #include "monitor/sensors/built_frames.hpp"
@@ -68,27 +68,28 @@ class SensorReader {
   void run();
   // The present time, in which messages are stamped.
   [[nodiscard]] std::int64_t time_ns() const noexcept;
-  void poll();
-  void forget_other_run();
-  void take_all();
-  void build();
-  void build_own();
-  void build_shared();
-  void keep(BuiltFrame frame);
-  [[nodiscard]] bool is_used(const SeenCloud* cloud) const noexcept;
-  void use(std::uint32_t sensor, SensorFrame frame);
-  void tell_of_no_memory();
-  void log_news();
-  void tell_of_silence();
-  void tell_of_shells();
-  void tell_of_robots();
-  void tell_of_payloads();
-  [[nodiscard]] std::string why_silent(const Sensor& sensor, const SensorStatus& status) const;
+  void poll() REQUIRES(mutex_);
+  void forget_other_run() REQUIRES(mutex_);
+  void take_all() REQUIRES(mutex_);
+  void build() REQUIRES(mutex_);
+  void build_own() REQUIRES(mutex_);
+  void build_shared() REQUIRES(mutex_);
+  void keep(BuiltFrame frame) REQUIRES(mutex_);
+  [[nodiscard]] bool is_used(const SeenCloud* cloud) const noexcept REQUIRES(mutex_);
+  void use(std::uint32_t sensor, SensorFrame frame) REQUIRES(mutex_);
+  void tell_of_no_memory() REQUIRES(mutex_);
+  void log_news() REQUIRES(mutex_);
+  void tell_of_silence() REQUIRES(mutex_);
+  void tell_of_shells() REQUIRES(mutex_);
+  void tell_of_robots() REQUIRES(mutex_);
+  void tell_of_payloads() REQUIRES(mutex_);
+  [[nodiscard]] std::string why_silent(const Sensor& sensor, const SensorStatus& status) const
+      REQUIRES(mutex_);
 
-  const Cell* cell_;
+  GUARDED_BY(mutex_) const Cell* cell_;
   Participant& participant_;
   SimulatedTime* time_;
-  std::uint64_t resets_ = 0;  // of that time
+  GUARDED_BY(mutex_) std::uint64_t resets_ = 0;  // of that time
   FrameExchange frames_;
   BuiltFrames built_;
   struct NotedBatch {
@@ -96,42 +97,44 @@ class SensorReader {
     std::int64_t came_ns = 0;  // as of time_ns()
   };
   SpscRing<NotedBatch> batches_;
-  std::mutex mutex_;  // guards what follows, but for the statuses
-  SceneIds ids_;
-  std::unique_ptr<Sensors> sensors_;
-  Intake intake_;
-  RosReaders ros_;
+  bool records_ = false;
+  std::int64_t started_ns_ = 0;  // CLOCK_MONOTONIC; for the thread
+  Mutex mutex_;
+  GUARDED_BY(mutex_) SceneIds ids_;
+  GUARDED_BY(mutex_) std::unique_ptr<Sensors> sensors_;
+  GUARDED_BY(mutex_) Intake intake_;
+  GUARDED_BY(mutex_) RosReaders ros_;
   DataWait wait_;
-  std::size_t waited_for_ = 0;  // number of readers of ROS 2's topics in `wait_`
-  std::vector<CdrSample> taken_;
-  std::vector<PoseSample> poses_;
-  std::vector<JointSample> joints_;
-  std::int64_t now_ns_ = 0, started_ns_ = 0;  // CLOCK_MONOTONIC
-  std::int64_t no_memory_ns_ = 0;             // when the log last told of it; 0: never
+  GUARDED_BY(mutex_) std::size_t waited_for_ = 0;  // number of readers of ROS 2's topics in `wait_`
+  GUARDED_BY(mutex_) std::vector<CdrSample> taken_;
+  GUARDED_BY(mutex_) std::vector<PoseSample> poses_;
+  GUARDED_BY(mutex_) std::vector<JointSample> joints_;
+  GUARDED_BY(mutex_) std::int64_t now_ns_ = 0;        // CLOCK_MONOTONIC
+  GUARDED_BY(mutex_) std::int64_t no_memory_ns_ = 0;  // when the log last told of it; 0: never
   std::string where_;
-  std::vector<bool> silence_said_;            // by sensor
-  std::vector<bool> is_shell_thick_;          // by sensor, as it was said
-  std::vector<std::vector<bool>> is_denied_;  // by sensor and robot, as it was said
-  std::vector<std::vector<bool>> carries_;    // by sensor and SensorStatus::payloads, likewise
+  GUARDED_BY(mutex_) std::vector<bool> silence_said_;    // by sensor
+  GUARDED_BY(mutex_) std::vector<bool> is_shell_thick_;  // by sensor, as it was said
+  // By sensor and robot, or SensorStatus::payloads, likewise.
+  GUARDED_BY(mutex_) std::vector<std::vector<bool>> is_denied_, carries_;
   // The last frame of a sensor, whose cloud stays as it is while mutex_ is held; and its copy.
   struct Last {
     SensorFrame frame;
     std::uint64_t scene_revision = 0;
     std::shared_ptr<const SeenCloud> copy;  // null: not copied yet
   };
-  std::vector<Last> last_;                  // by sensor
-  std::unique_ptr<PartnerFrames> partner_;  // null: the daemon has none
-  FrameNames names_;
-  std::uint64_t content_ = 0;                 // of the frame that is built
-  bool records_ = false, is_shared_ = false;  // the latter: that frame is one of the partner
+  GUARDED_BY(mutex_) std::vector<Last> last_;                  // by sensor
+  GUARDED_BY(mutex_) std::unique_ptr<PartnerFrames> partner_;  // null: the daemon has none
+  GUARDED_BY(mutex_) FrameNames names_;
+  GUARDED_BY(mutex_) std::uint64_t content_ = 0;  // of the frame that is built
+  GUARDED_BY(mutex_) bool is_shared_ = false;     // that frame is one of the partner
   // Frames of the partner that are to be built.
   struct Sent {
     std::uint64_t content = 0;  // 0: none
     BuiltFrame frame;
   };
-  std::vector<Sent> sent_;  // by sensor
-  mutable std::mutex status_mutex_;
-  std::vector<SensorStatus> statuses_;
+  GUARDED_BY(mutex_) std::vector<Sent> sent_;  // by sensor
+  mutable Mutex status_mutex_;
+  GUARDED_BY(status_mutex_) std::vector<SensorStatus> statuses_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

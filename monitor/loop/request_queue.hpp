@@ -5,9 +5,10 @@
 #include <condition_variable>
 #include <cstddef>
 #include <deque>
-#include <mutex>
 #include <optional>
 #include <utility>
+
+#include "monitor/interface/mutex.hpp"
 
 namespace clearance {
 
@@ -24,7 +25,7 @@ class RequestQueue {
   [[nodiscard]] bool put(Item item) {
     const std::size_t bytes = bytes_of(item);
     {
-      const std::lock_guard lock(mutex_);
+      const Lock lock(mutex_);
       const bool is_full =
           !waiting_.empty() && (waiting_.size() >= most_ || bytes_ + bytes > most_bytes_);
       if (closed_ || is_full) return false;
@@ -36,25 +37,26 @@ class RequestQueue {
   }
   // Waits for a request. Returns nothing after close().
   [[nodiscard]] std::optional<Item> next() {
-    std::unique_lock lock(mutex_);
-    changed_.wait(lock, [this] { return closed_ || !waiting_.empty(); });
+    Lock lock(mutex_);
+    changed_.wait(lock, [this]() REQUIRES(mutex_) { return closed_ || !waiting_.empty(); });
     if (closed_) return std::nullopt;
     return take_first();
   }
   // The same, but returns nothing after this time, too.
   [[nodiscard]] std::optional<Item> next_within(std::chrono::milliseconds patience) {
-    std::unique_lock lock(mutex_);
-    changed_.wait_for(lock, patience, [this] { return closed_ || !waiting_.empty(); });
+    Lock lock(mutex_);
+    changed_.wait_for(lock, patience,
+                      [this]() REQUIRES(mutex_) { return closed_ || !waiting_.empty(); });
     return closed_ || waiting_.empty() ? std::nullopt : std::optional(take_first());
   }
   [[nodiscard]] bool is_closed() {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     return closed_;
   }
   // Drops the requests that wait.
   void close() {
     {
-      const std::lock_guard lock(mutex_);
+      const Lock lock(mutex_);
       closed_ = true;
       waiting_.clear();
       bytes_ = 0;
@@ -63,7 +65,7 @@ class RequestQueue {
   }
 
  private:
-  Item take_first() {
+  Item take_first() REQUIRES(mutex_) {
     Item item = std::move(waiting_.front());
     waiting_.pop_front();
     bytes_ -= bytes_of(item);
@@ -71,11 +73,11 @@ class RequestQueue {
   }
 
   const std::size_t most_, most_bytes_;
-  std::mutex mutex_;
+  Mutex mutex_;
   std::condition_variable changed_;
-  std::deque<Item> waiting_;
-  std::size_t bytes_ = 0;
-  bool closed_ = false;
+  GUARDED_BY(mutex_) std::deque<Item> waiting_;
+  GUARDED_BY(mutex_) std::size_t bytes_ = 0;
+  GUARDED_BY(mutex_) bool closed_ = false;
 };
 
 }  // namespace clearance

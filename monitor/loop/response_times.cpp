@@ -8,7 +8,7 @@ namespace clearance {
 ResponseTimes::ResponseTimes() : inputs_(kMostInputs) {}
 
 void ResponseTimes::add(const ReportStart& start, std::int64_t delay_ns) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   delays_.add(delay_ns);
   std::int64_t oldest_ns = -1;
   for (std::size_t i = 0; i < kMostInputs; ++i) {
@@ -20,7 +20,7 @@ void ResponseTimes::add(const ReportStart& start, std::int64_t delay_ns) {
 }
 
 void ResponseTimes::name(const LoopStatistics& statistics, const Scene& scene) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   for (std::size_t i = 0; i < kMostInputs; ++i) {
     const std::size_t sensor = i - kMaxSources;
     std::string name;
@@ -35,19 +35,19 @@ void ResponseTimes::name(const LoopStatistics& statistics, const Scene& scene) {
 }
 
 Histogram ResponseTimes::slowest() const {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   return slowest_;
 }
 
 Histogram ResponseTimes::delays() const {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   return delays_;
 }
 
 std::vector<InputResponse> ResponseTimes::inputs() const {
   std::vector<InputResponse> all;
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     for (const Input& input : inputs_) {
       if (input.times.count() > 0 && !input.name.empty())
         all.push_back({input.name, input.times.percentile_ns(0.5), input.times.max_ns()});

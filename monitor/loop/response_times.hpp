@@ -3,11 +3,11 @@
 #pragma once
 
 #include <cstdint>
-#include <mutex>
 #include <string>
 #include <vector>
 
 #include "config/scene/scene.hpp"
+#include "monitor/interface/mutex.hpp"
 #include "monitor/loop/histogram.hpp"
 #include "monitor/loop/loop_statistics.hpp"
 #include "monitor/loop/ports.hpp"
@@ -41,9 +41,9 @@ class ResponseTimes {
     Histogram times;
   };
 
-  mutable std::mutex mutex_;
-  std::vector<Input> inputs_;  // as ReportStart::ages_ns
-  Histogram slowest_, delays_;
+  mutable Mutex mutex_;
+  GUARDED_BY(mutex_) std::vector<Input> inputs_;  // as ReportStart::ages_ns
+  GUARDED_BY(mutex_) Histogram slowest_, delays_;
 };
 
 }  // namespace clearance

@@ -10,7 +10,7 @@ LapsedWriters::LapsedWriters() : listener_(dds_create_listener(nullptr)) {
 // that is heard again, or one that leaves.
 void LapsedWriters::note(dds_entity_t, dds_liveliness_changed_status_t status, void* lapsed) {
   auto& self = *static_cast<LapsedWriters*>(lapsed);
-  const std::lock_guard lock(self.mutex_);
+  const Lock lock(self.mutex_);
   if (status.not_alive_count_change > 0) {
     self.lapsed_.insert(status.last_publication_handle);
   } else {
@@ -19,8 +19,9 @@ void LapsedWriters::note(dds_entity_t, dds_liveliness_changed_status_t status, v
 }
 
 void LapsedWriters::remove_from(std::vector<std::uint64_t>& writers) const {
-  const std::lock_guard lock(mutex_);
-  std::erase_if(writers, [&](std::uint64_t writer) { return lapsed_.contains(writer); });
+  const Lock lock(mutex_);
+  std::erase_if(writers,
+                [&](std::uint64_t writer) REQUIRES(mutex_) { return lapsed_.contains(writer); });
 }
 
 }  // namespace clearance

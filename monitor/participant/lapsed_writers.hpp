@@ -6,9 +6,10 @@
 
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <set>
 #include <vector>
+
+#include "monitor/interface/mutex.hpp"
 
 namespace clearance {
 
@@ -29,8 +30,8 @@ class LapsedWriters {
   };
   static void note(dds_entity_t reader, dds_liveliness_changed_status_t status, void* lapsed);
 
-  mutable std::mutex mutex_;
-  std::set<std::uint64_t> lapsed_;
+  mutable Mutex mutex_;
+  GUARDED_BY(mutex_) std::set<std::uint64_t> lapsed_;
   std::unique_ptr<dds_listener_t, Delete> listener_;
 };
 

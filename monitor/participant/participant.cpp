@@ -6,9 +6,9 @@
 #include <fmt/format.h>
 
 #include <map>
-#include <mutex>
 #include <string_view>
 
+#include "monitor/interface/mutex.hpp"
 #include "monitor/participant/domain_configuration.hpp"
 #include "monitor/wire/report_checksum.hpp"
 
@@ -176,9 +176,9 @@ struct Participant::OpenDomain {
 // one. If another library of the process has configured it, theirs is left alone.
 std::shared_ptr<const Participant::OpenDomain> Participant::open_domain(const DdsOptions& options,
                                                                         std::uint32_t id) {
-  static std::mutex mutex;
-  static std::map<std::uint32_t, std::weak_ptr<const OpenDomain>> domains;
-  const std::lock_guard lock(mutex);
+  static Mutex mutex;
+  GUARDED_BY(mutex) static std::map<std::uint32_t, std::weak_ptr<const OpenDomain>> domains;
+  const Lock lock(mutex);
   if (auto open = domains[id].lock()) return open;
   std::uint32_t number = id;
   dds_entity_t handle = dds_create_domain(number, domain_configuration(options).c_str());

@@ -35,9 +35,9 @@ RosNode::RosNode(dds_entity_t participant, std::string name,
                  std::function<dds_entity_t()> make_writer)
     : participant_(participant), name_(std::move(name)), make_writer_(std::move(make_writer)) {}
 
-void RosNode::add(std::vector<dds_entity_t>& to, dds_entity_t endpoint) {
-  const std::lock_guard lock(mutex_);
-  to.push_back(endpoint);
+void RosNode::add(std::vector<dds_entity_t> RosNode::*to, dds_entity_t endpoint) {
+  const Lock lock(mutex_);
+  (this->*to).push_back(endpoint);
   try {
     if (const auto make = std::exchange(make_writer_, nullptr)) writer_ = make();
   } catch (const DdsError&) {

@@ -5,9 +5,10 @@
 #include <dds/dds.h>
 
 #include <functional>
-#include <mutex>
 #include <string>
 #include <vector>
+
+#include "monitor/interface/mutex.hpp"
 
 namespace clearance {
 
@@ -21,18 +22,18 @@ class RosNode {
 
   // Announces one more endpoint, and drops those that were deleted since. Any thread may call this.
   // If DDS Security denies the topic, nothing is announced, and all else goes on.
-  void add_reader(dds_entity_t reader) { add(readers_, reader); }
-  void add_writer(dds_entity_t writer) { add(writers_, writer); }
+  void add_reader(dds_entity_t reader) { add(&RosNode::readers_, reader); }
+  void add_writer(dds_entity_t writer) { add(&RosNode::writers_, writer); }
 
  private:
-  void add(std::vector<dds_entity_t>& to, dds_entity_t endpoint);
+  void add(std::vector<dds_entity_t> RosNode::*to, dds_entity_t endpoint);
 
-  std::mutex mutex_;
-  dds_entity_t participant_;
-  std::string name_;
-  std::function<dds_entity_t()> make_writer_;
-  dds_entity_t writer_ = 0;
-  std::vector<dds_entity_t> readers_, writers_;
+  Mutex mutex_;
+  const dds_entity_t participant_;
+  const std::string name_;
+  GUARDED_BY(mutex_) std::function<dds_entity_t()> make_writer_;
+  GUARDED_BY(mutex_) dds_entity_t writer_ = 0;
+  GUARDED_BY(mutex_) std::vector<dds_entity_t> readers_, writers_;
 };
 
 // A name of these parts that a node may have: "clearanced_left".

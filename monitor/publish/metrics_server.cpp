@@ -11,11 +11,11 @@
 #include <boost/beast/http.hpp>
 #include <chrono>
 #include <functional>
-#include <mutex>
 #include <stdexcept>
 #include <thread>
 #include <utility>
 
+#include "monitor/interface/mutex.hpp"
 #include "monitor/loop/realtime.hpp"
 
 namespace clearance {
@@ -140,7 +140,7 @@ struct MetricsServer::State {
       status = http::status::not_found;
       body = "expected /metrics\n";
     } else {
-      const std::lock_guard lock(mutex);
+      const Lock lock(mutex);
       body = text;
       if (body.empty()) status = http::status::service_unavailable;
     }
@@ -156,8 +156,8 @@ struct MetricsServer::State {
   asio::io_context context;
   Local::acceptor acceptor;
   asio::steady_timer timer;
-  std::mutex mutex;
-  std::string text;
+  Mutex mutex;
+  GUARDED_BY(mutex) std::string text;
   std::thread thread;
 };
 
@@ -166,7 +166,7 @@ MetricsServer::MetricsServer(const std::filesystem::path& socket)
 MetricsServer::~MetricsServer() = default;
 
 void MetricsServer::publish(std::string text) {
-  const std::lock_guard lock(state_->mutex);
+  const Lock lock(state_->mutex);
   state_->text = std::move(text);
 }
 

@@ -118,7 +118,7 @@ ReportWriter::~ReportWriter() { finish(); }
 void ReportWriter::finish() {
   if (!thread_.joinable()) return;
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     queue_->close();
   }
   thread_.join();
@@ -126,14 +126,14 @@ void ReportWriter::finish() {
 
 void ReportWriter::continue_with(const Cell& cell, const SceneInForce& since, ReportQueue& queue) {
   auto next = std::make_unique<CellMessages>(cell, since, queue, identity_.id);
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   next_ = std::move(next);
   queue_->close();
   queue_ = &queue;
 }
 
 bool ReportWriter::is_to_continue() const {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   return queue_ != written_;
 }
 
@@ -221,7 +221,7 @@ void ReportWriter::write_all() {
 bool ReportWriter::change() {
   std::unique_ptr<CellMessages> changed;
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     changed = std::move(next_);
   }
   if (changed == nullptr) return false;
@@ -233,7 +233,7 @@ bool ReportWriter::change() {
   open_topics(now_->cell.scene);
   catalogue_is_due_ = true;
   if (partner_ == nullptr) settle_catalogue();
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   written_ = &now_->queue;
   return true;
 }

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <thread>
 
 #include "config/cell/cell.hpp"
@@ -15,6 +14,7 @@
 #include "monitor/dds/partner_port.hpp"
 #include "monitor/dds/pose_reader.hpp"
 #include "monitor/inputs/scene_in_force.hpp"
+#include "monitor/interface/mutex.hpp"
 #include "monitor/loop/report_queue.hpp"
 #include "monitor/loop/response_times.hpp"
 #include "monitor/participant/participant.hpp"
@@ -141,10 +141,10 @@ class ReportWriter {
   ResponseTimes responses_;
   std::atomic<std::uint64_t> failed_writes_{0};
   std::atomic<std::uint64_t> published_{0};
-  mutable std::mutex mutex_;            // guards the next three
-  std::unique_ptr<CellMessages> next_;  // null: no other cell follows
-  ReportQueue* queue_;                  // the last one
-  const ReportQueue* written_;          // the one that is being written
+  mutable Mutex mutex_;
+  GUARDED_BY(mutex_) std::unique_ptr<CellMessages> next_;  // null: no other cell follows
+  GUARDED_BY(mutex_) ReportQueue* queue_;                  // the last one
+  GUARDED_BY(mutex_) const ReportQueue* written_;          // the one that is being written
   std::thread thread_;
 };
 

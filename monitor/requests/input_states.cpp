@@ -33,7 +33,7 @@ class StateQuestion final : public LoopQuestion {
 // The time of asking is read before the loop is asked, so that its answer is not older.
 std::shared_ptr<const InputState> InputStates::of(const std::shared_ptr<const Cell>& cell,
                                                   Time since) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   if (last_ != nullptr && cell_ == cell && asked_ >= since) return last_;
   StateQuestion question(cell->scene);
   const Time now = std::chrono::steady_clock::now();

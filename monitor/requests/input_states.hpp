@@ -4,9 +4,9 @@
 #include <atomic>
 #include <chrono>
 #include <memory>
-#include <mutex>
 
 #include "config/cell/cell.hpp"
+#include "monitor/interface/mutex.hpp"
 #include "monitor/interface/present_inputs.hpp"
 #include "monitor/loop/tick_loop.hpp"
 
@@ -30,10 +30,10 @@ class InputStates {
  private:
   TickLoop& loop_;
   const std::atomic<bool>& loop_ended_;
-  std::mutex mutex_;
-  std::shared_ptr<const Cell> cell_;
-  std::shared_ptr<const InputState> last_;
-  Time asked_ = Time::min();  // before the loop answered
+  Mutex mutex_;
+  GUARDED_BY(mutex_) std::shared_ptr<const Cell> cell_;
+  GUARDED_BY(mutex_) std::shared_ptr<const InputState> last_;
+  GUARDED_BY(mutex_) Time asked_ = Time::min();  // before the loop answered
 };
 
 }  // namespace clearance

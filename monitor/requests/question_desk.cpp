@@ -72,7 +72,7 @@ void QuestionDesk::start() {
 bool QuestionDesk::put(QueuedQuestion question) {
   const std::string client = question.question.client;
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     std::size_t& waiting = waiting_[client];
     if (waiting >= settings_.queue) return false;
     ++waiting;
@@ -83,18 +83,18 @@ bool QuestionDesk::put(QueuedQuestion question) {
 }
 
 void QuestionDesk::forget(const std::string& client) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   const auto found = waiting_.find(client);
   if (found != waiting_.end() && --found->second == 0) waiting_.erase(found);
 }
 
 void QuestionDesk::follow(std::shared_ptr<const Cell> cell) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   cell_ = std::move(cell);
 }
 
 std::shared_ptr<const Cell> QuestionDesk::cell() {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   return cell_;
 }
 

@@ -7,7 +7,6 @@
 #include <functional>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
@@ -15,6 +14,7 @@
 #include "config/cell/cell.hpp"
 #include "monitor/ask/asker.hpp"
 #include "monitor/interface/motion_question.hpp"
+#include "monitor/interface/mutex.hpp"
 #include "monitor/loop/request_queue.hpp"
 #include "monitor/requests/input_states.hpp"
 
@@ -79,9 +79,9 @@ class QuestionDesk {
   const std::atomic<bool>& loop_ended_;
   InputStates inputs_;
   RequestQueue<QueuedQuestion> queue_;
-  std::mutex mutex_;  // guards the next two
-  std::shared_ptr<const Cell> cell_;
-  std::map<std::string, std::size_t> waiting_;  // by client
+  Mutex mutex_;
+  GUARDED_BY(mutex_) std::shared_ptr<const Cell> cell_;
+  GUARDED_BY(mutex_) std::map<std::string, std::size_t> waiting_;  // by client
   std::vector<std::thread> threads_;
 };
 

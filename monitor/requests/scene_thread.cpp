@@ -180,7 +180,7 @@ std::optional<CommandResult> SceneThread::result_of(const KeptFiles& files) {
 }
 
 bool SceneThread::enter(Phase phase) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   if (phase_ == Phase::kEnded || (is_ending_ && phase == Phase::kReading)) return false;
   phase_ = phase;
   return true;
@@ -190,7 +190,7 @@ bool SceneThread::end() {
   queue_.close();
   bool is_reading = false;
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     is_ending_ = true;
     is_reading = phase_ == Phase::kReading;
     if (is_reading) phase_ = Phase::kEnded;

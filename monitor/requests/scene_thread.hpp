@@ -7,11 +7,11 @@
 #include <deque>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
 
+#include "monitor/interface/mutex.hpp"
 #include "monitor/requests/scene_commander.hpp"
 #include "monitor/requests/scene_task.hpp"
 
@@ -73,9 +73,10 @@ class SceneThread {
   bool has_to_wait_ = false;           // the task in hand
   std::uint64_t in_hand_ = 0;
   std::shared_ptr<std::atomic<int>> readings_ = std::make_shared<std::atomic<int>>(0);
-  std::mutex mutex_;
-  Phase phase_ = Phase::kChanging;  // kReading: the thread may take long, and changes nothing
-  bool is_ending_ = false;
+  Mutex mutex_;
+  // kReading: the thread may take long, and changes nothing.
+  GUARDED_BY(mutex_) Phase phase_ = Phase::kChanging;
+  GUARDED_BY(mutex_) bool is_ending_ = false;
   std::thread thread_;
 };
 

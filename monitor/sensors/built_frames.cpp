@@ -82,16 +82,16 @@ std::uint64_t FrameNames::name(const BuiltFrame& frame) {
 }
 
 void BuiltFrames::put(BuiltFrame frame) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   bytes_ += frame.message.cdr.size();
   frames_.push_back(std::move(frame));
   for (; bytes_ > kMostBytes; frames_.pop_front()) bytes_ -= frames_.front().message.cdr.size();
 }
 
 std::vector<BuiltFrame> BuiltFrames::take(std::uint32_t sensor, std::int64_t stamp_ns) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   std::vector<BuiltFrame> taken;
-  std::erase_if(frames_, [&](BuiltFrame& frame) {
+  std::erase_if(frames_, [&](BuiltFrame& frame) REQUIRES(mutex_) {
     if (frame.sensor != sensor || frame.stamp_ns > stamp_ns) return false;
     bytes_ -= frame.message.cdr.size();
     taken.push_back(std::move(frame));

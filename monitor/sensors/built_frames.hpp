@@ -4,10 +4,10 @@
 #include <cstddef>
 #include <cstdint>
 #include <deque>
-#include <mutex>
 #include <vector>
 
 #include "frames.h"
+#include "monitor/interface/mutex.hpp"
 #include "monitor/sensors/sensors.hpp"
 #include "monitor/wire/dds_sample.hpp"
 
@@ -31,9 +31,9 @@ class BuiltFrames {
   [[nodiscard]] std::vector<BuiltFrame> take(std::uint32_t sensor, std::int64_t stamp_ns);
 
  private:
-  std::mutex mutex_;
-  std::deque<BuiltFrame> frames_;
-  std::size_t bytes_ = 0;
+  Mutex mutex_;
+  GUARDED_BY(mutex_) std::deque<BuiltFrame> frames_;
+  GUARDED_BY(mutex_) std::size_t bytes_ = 0;
 };
 
 // Names frames by all that they are built of: those of one name are the same to the bit. To be told

@@ -67,7 +67,7 @@ CommandRelay::CommandRelay(client::Connection& connection, const Cell& cell, std
   port_ = std::make_unique<CommandPort>(
       cell, cell.commands.from, connection_.participant(), daemon,
       [this](GivenCommand command) {
-        const std::lock_guard lock(mutex_);
+        const Lock lock(mutex_);
         if (stop_ || queue_.size() >= SceneQueue::kMost) return false;
         queue_.push_back(std::move(command));
         changed_.notify_one();
@@ -82,7 +82,7 @@ CommandRelay::CommandRelay(client::Connection& connection, const Cell& cell, std
 CommandRelay::~CommandRelay() {
   if (!thread_.joinable()) return;
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     stop_ = true;
   }
   changed_.notify_one();
@@ -102,8 +102,8 @@ void CommandRelay::run() {
   for (;;) {
     GivenCommand next;
     {
-      std::unique_lock lock(mutex_);
-      changed_.wait(lock, [this] { return stop_ || !queue_.empty(); });
+      Lock lock(mutex_);
+      changed_.wait(lock, [this]() REQUIRES(mutex_) { return stop_ || !queue_.empty(); });
       if (stop_) return;
       next = std::move(queue_.front());
       queue_.pop_front();

@@ -8,7 +8,6 @@
 #include <deque>
 #include <map>
 #include <memory>
-#include <mutex>
 #include <string>
 #include <thread>
 #include <vector>
@@ -17,6 +16,7 @@
 #include "monitor/client/commands.hpp"
 #include "monitor/client/shared_cell.hpp"
 #include "monitor/dds/request_port.hpp"
+#include "monitor/interface/mutex.hpp"
 
 namespace clearance::merge {
 
@@ -51,9 +51,9 @@ class CommandRelay {
   const bool follow_first_;  // the shares take over the scene of the first one
   std::atomic<std::uint64_t> revision_{0}, since_cycle_{0};
   std::atomic<std::uint64_t> whole_in_{0};  // the revision that all shares have; 0: not the same
-  std::mutex mutex_;                        // guards the queue
+  Mutex mutex_;
   std::condition_variable changed_;
-  std::deque<GivenCommand> queue_;
+  GUARDED_BY(mutex_) std::deque<GivenCommand> queue_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
   std::unique_ptr<CommandPort> port_;

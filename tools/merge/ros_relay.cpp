@@ -56,7 +56,7 @@ std::unique_ptr<RosRelay::CellRelay> RosRelay::parts_of(Cell cell) {
   add_asked(asked_, parts->cell.ros.outputs);
   if (!writes_ros(parts->cell)) return parts;
   const auto health = [this](const LoopStatistics&) {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     return std::exchange(health_, std::nullopt);
   };
   parts->writer = std::make_unique<RosWriter>(parts->cell, participant_, health);
@@ -106,7 +106,7 @@ void RosRelay::write(const client::SharedCell& whole) {
 void RosRelay::tell(Sample<clearance_msg_Health> health) {
   if (!now_->writer) return;
   {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     health_.emplace(std::move(health));
   }
   now_->writer->statistics({});

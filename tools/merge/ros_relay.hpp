@@ -4,7 +4,6 @@
 #include <cstdint>
 #include <future>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <variant>
@@ -12,6 +11,7 @@
 
 #include "config/cell/cell_file.hpp"
 #include "monitor/client/shared_cell.hpp"
+#include "monitor/interface/mutex.hpp"
 #include "monitor/interface/report.hpp"
 #include "monitor/participant/participant.hpp"
 #include "monitor/publish/ros_writer.hpp"
@@ -50,8 +50,9 @@ class RosRelay {
   const CellOptions options_;
   const std::vector<std::string> asked_;
   Report report_;
-  std::mutex mutex_;  // guards health_, which a writer's thread takes
-  std::optional<Sample<clearance_msg_Health>> health_;
+  Mutex mutex_;
+  // A writer's thread takes it.
+  GUARDED_BY(mutex_) std::optional<Sample<clearance_msg_Health>> health_;
   std::unique_ptr<CellRelay> now_;
   std::uint64_t read_ = 0, unreadable_ = 0;  // revisions; 0: none
   // Threads that may wait for a disk or for DDS: the one that makes the next cell, and the one that

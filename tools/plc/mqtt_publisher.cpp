@@ -9,6 +9,7 @@
 
 #include "config/text/file_bytes.hpp"
 #include "monitor/app/log_line.hpp"
+#include "monitor/interface/mutex.hpp"
 #include "monitor/interface/plc_log_lines.hpp"
 
 namespace clearance::plc {
@@ -118,7 +119,7 @@ MqttPublisher::~MqttPublisher() {
 void MqttPublisher::run(const std::stop_token& stop) {
   constexpr int kWait_ms = 10, kLastLoops = 50;
   constexpr std::chrono::milliseconds kRetry(1000);
-  std::mutex mutex;
+  Mutex mutex;
   std::condition_variable_any waits;
   int result = mosquitto_connect_async(client_.get(), settings_.mqtt.host.c_str(),
                                        settings_.mqtt.port, kKeepAlive_s);
@@ -130,7 +131,7 @@ void MqttPublisher::run(const std::stop_token& stop) {
     is_connected_ = false;
     if (stop.stop_requested()) return;
     tell(mosquitto_strerror(result), true);
-    std::unique_lock lock(mutex);
+    Lock lock(mutex);
     if (waits.wait_for(lock, stop, kRetry, [] { return false; }) || stop.stop_requested()) return;
     result = mosquitto_reconnect_async(client_.get());
   }
@@ -138,7 +139,7 @@ void MqttPublisher::run(const std::stop_token& stop) {
 
 // The reason that a broker gives is better than that of the end of the connection behind it.
 void MqttPublisher::tell(const std::string& state, bool is_first_reason) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   if (told_ == state || (is_first_reason && told_ && !told_->empty())) return;
   told_ = state;
   const std::string broker = fmt::format("{}:{}", settings_.mqtt.host, settings_.mqtt.port);

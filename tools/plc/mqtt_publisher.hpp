@@ -8,7 +8,6 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
-#include <mutex>
 #include <optional>
 #include <string>
 #include <thread>
@@ -17,6 +16,7 @@
 #include <mosquitto.h>
 
 #include "config/cell/plc_settings.hpp"
+#include "monitor/interface/mutex.hpp"
 #include "tools/plc/held_figures.hpp"
 #include "tools/plc/register_table.hpp"
 
@@ -48,9 +48,10 @@ class MqttPublisher {
   std::string state_;
   std::int64_t repeat_ns_ = 0;  // when everything is sent again
   std::atomic<bool> is_connected_ = false, is_new_ = false;
-  std::mutex mutex_;                 // of told_, which both threads write
-  std::optional<std::string> told_;  // why the broker is away, as logged last; empty: it is not
-  std::jthread thread_;              // of run(); it uses all of the above
+  Mutex mutex_;
+  // Why the broker is away, as logged last; empty: it is not. Both threads write it.
+  GUARDED_BY(mutex_) std::optional<std::string> told_;
+  std::jthread thread_;  // of run(); it uses all of the above
 };
 
 // "clearance/zone/people/clear". Characters of names that topics reserve are written as %2F.

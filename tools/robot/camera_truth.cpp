@@ -77,7 +77,7 @@ void CameraTruth::sent(const SentFrame& sent) {
     frame.sizes.push_back(
         static_cast<float>(2.0 * ray * sensor.error_at(measured) + 1.5 * pixel * measured));
   }
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   frames_[sent.sensor].push_back(std::move(frame));
   if (frames_[sent.sensor].size() > kKept) frames_[sent.sensor].pop_front();
 }
@@ -91,7 +91,7 @@ void CameraTruth::run() {
   name_thread("truth");
   while (!stop_) {
     if (reports_.newest(kPause) && reports_->scene_revision == cell_.scene.revision) {
-      for (std::uint32_t i = 0; i < frames_.size(); ++i) compare(i, *reports_);
+      for (std::uint32_t i = 0; i < cell_.scene.sensors.size(); ++i) compare(i, *reports_);
       compare_bodies(*reports_);
     }
     SystemClock clock;
@@ -101,7 +101,7 @@ void CameraTruth::run() {
 
 std::optional<CameraTruth::Frame> CameraTruth::frame_of(std::uint32_t sensor,
                                                         std::int64_t stamp_ns) {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   const auto frame = std::ranges::find_if(frames_[sensor], [&](const Frame& each) {
     return std::llabs(each.stamp_ns - stamp_ns) <= kSameNs;
   });

@@ -6,7 +6,6 @@
 #include <cstdint>
 #include <deque>
 #include <map>
-#include <mutex>
 #include <optional>
 #include <span>
 #include <string>
@@ -15,6 +14,7 @@
 
 #include "config/cell/cell.hpp"
 #include "monitor/client/client.hpp"
+#include "monitor/interface/mutex.hpp"
 #include "tools/rendering/simulated_world.hpp"
 #include "tools/robot/simulated_cameras.hpp"
 
@@ -88,12 +88,12 @@ class CameraTruth {
   const SimulationTime& time_;
   client::Reports reports_;
   SimulatedWorld world_;
-  std::vector<std::uint32_t> known_;       // bodies that the cell knows, in ascending order
-  double joint_motion_ = 0.0;              // m: of a link between two joint states, at most
-  std::mutex mutex_;                       // of `frames_`
-  std::vector<std::deque<Frame>> frames_;  // by sensor
-  std::map<std::uint32_t, Found> found_;   // by pair
-  std::uint64_t unknown_ = 0;              // frames that reports used and that are not kept
+  std::vector<std::uint32_t> known_;  // bodies that the cell knows, in ascending order
+  double joint_motion_ = 0.0;         // m: of a link between two joint states, at most
+  Mutex mutex_;
+  GUARDED_BY(mutex_) std::vector<std::deque<Frame>> frames_;  // by sensor
+  std::map<std::uint32_t, Found> found_;                      // by pair
+  std::uint64_t unknown_ = 0;  // frames that reports used and that are not kept
   std::size_t most_blind_ = 0;
   std::atomic<bool> stop_{false};
   std::thread thread_;

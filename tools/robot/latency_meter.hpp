@@ -4,13 +4,13 @@
 #include <atomic>
 #include <chrono>
 #include <cstdint>
-#include <mutex>
 #include <string>
 #include <thread>
 
 #include "monitor/app/log_line.hpp"
 #include "monitor/app/print.hpp"
 #include "monitor/client/client.hpp"
+#include "monitor/interface/mutex.hpp"
 #include "monitor/loop/histogram.hpp"
 #include "monitor/loop/ports.hpp"
 #include "monitor/loop/realtime.hpp"
@@ -33,7 +33,7 @@ class LatencyMeter {
 
   // `where`: the domain of the reports.
   void tell(const std::string& where) {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     if (all_.count() == 0) {
       print(stdout, "latency  not known: no report came on {}; does clearanced run there?\n",
             where);
@@ -46,7 +46,7 @@ class LatencyMeter {
   }
 
   [[nodiscard]] std::string histograms() {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     return histograms_json({{"sent_to_received", all_}, {"tick_to_received", from_tick_}});
   }
 
@@ -61,7 +61,7 @@ class LatencyMeter {
   void note(std::int64_t now) {
     if (reports_->newest_pose_ns <= newest_) return;
     newest_ = reports_->newest_pose_ns;
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     all_.add(now - newest_);
     to_tick_.add(reports_->now_ns - newest_);
     from_tick_.add(now - reports_->now_ns);
@@ -70,8 +70,8 @@ class LatencyMeter {
   SystemClock clock_;
   client::Reports reports_;
   std::int64_t newest_ = 0;
-  std::mutex mutex_;
-  Histogram all_, to_tick_, from_tick_;
+  Mutex mutex_;
+  GUARDED_BY(mutex_) Histogram all_, to_tick_, from_tick_;
   std::atomic<bool> stop_{false};
   std::thread thread_;
 };

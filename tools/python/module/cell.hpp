@@ -4,13 +4,13 @@
 #include <pybind11/pybind11.h>
 
 #include <memory>
-#include <mutex>
 #include <string>
 #include <utility>
 #include <vector>
 
 #include "config/cell/cell_file.hpp"
 #include "monitor/ask/asker.hpp"
+#include "monitor/interface/mutex.hpp"
 #include "tools/python/module/configurations.hpp"
 
 namespace clearance::python {
@@ -21,7 +21,7 @@ class Idle {
  public:
   [[nodiscard]] std::unique_ptr<T> borrow(const Scene& scene) {
     {
-      const std::lock_guard lock(mutex_);
+      const Lock lock(mutex_);
       if (!idle_.empty()) {
         auto one = std::move(idle_.back());
         idle_.pop_back();
@@ -31,13 +31,13 @@ class Idle {
     return std::make_unique<T>(scene);
   }
   void give_back(std::unique_ptr<T> one) {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     idle_.push_back(std::move(one));
   }
 
  private:
-  std::mutex mutex_;
-  std::vector<std::unique_ptr<T>> idle_;
+  Mutex mutex_;
+  GUARDED_BY(mutex_) std::vector<std::unique_ptr<T>> idle_;
 };
 
 // A checked cell, which does not change. Threads may share it.

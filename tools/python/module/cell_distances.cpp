@@ -6,7 +6,6 @@
 #include <atomic>
 #include <chrono>
 #include <cmath>
-#include <mutex>
 #include <numeric>
 #include <optional>
 #include <span>
@@ -16,6 +15,7 @@
 #include <vector>
 
 #include "config/scene/pairs_between.hpp"
+#include "monitor/interface/mutex.hpp"
 #include "tools/python/module/arrays.hpp"
 #include "tools/python/module/cell.hpp"
 #include "tools/python/module/waiting.hpp"
@@ -141,6 +141,7 @@ class Work {
       });
     }
     if (is_interrupted_) throw_pending();
+    const Lock lock(mutex_);
     return bad_;
   }
 
@@ -152,7 +153,7 @@ class Work {
     throw py::error_already_set();
   }
   void note_bad(const BadPosition& bad) {
-    const std::lock_guard lock(mutex_);
+    const Lock lock(mutex_);
     if (bad.row >= first_bad_) return;
     first_bad_ = bad.row;
     bad_ = bad;
@@ -190,8 +191,8 @@ class Work {
   const Rows& rows_;
   std::atomic<std::size_t> next_ = 0, first_bad_;
   std::atomic<bool> is_interrupted_ = false;
-  std::mutex mutex_;
-  std::optional<BadPosition> bad_;
+  Mutex mutex_;
+  GUARDED_BY(mutex_) std::optional<BadPosition> bad_;
 };
 
 // The pairs that the argument names, by their objects in any order; all: it is None.
