@@ -8,7 +8,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cstdlib>
 #include <utility>
 
 #include "config/text/sentences.hpp"
@@ -18,6 +17,7 @@
 #include "monitor/loop/batch_store.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/loop/scene_capacity.hpp"
+#include "monitor/wire/moveit_types.hpp"
 
 namespace clearance {
 namespace {
@@ -48,10 +48,9 @@ void log_matched(dds_entity_t reader, const dds_subscription_matched_status_t st
            topic_of(reader), status.current_count);
 }
 
-// The domain that a ROS 2 node started from the same shell would join.
-std::string ros_domain() {
-  const char* const id = std::getenv("ROS_DOMAIN_ID");
-  return id == nullptr || *id == '\0' ? "" : fmt::format(" (ROS_DOMAIN_ID is {} here)", id);
+bool is_of_moveit(const RosType* type) {
+  return type == &kRosCollisionObject || type == &kRosAttachedCollisionObject ||
+         type == &kRosPlanningScene;
 }
 
 }  // namespace
@@ -187,12 +186,22 @@ std::string PoseReader::senders_of_joints() const {
                                                 : fmt::format("partition {}", writer.partition),
                        where_);
   }
-  return fmt::format(
-      "there is no publisher of {} or of rt/joint_states (any namespace) on {}; there is: {}. "
-      "Nothing is heard across domains{}, networks (--interface; ros meets ROS 2 nodes, also those "
-      "with ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST) or from an rmw that is no DDS (rmw_zenoh)",
-      topics_->joint_states, where_, ros_.present().listed(),
-      where_.find("ROS_DOMAIN_ID") == std::string::npos ? ros_domain() : "");
+  return fmt::format("there is no publisher of {} or of rt/joint_states (any namespace) {}",
+                     topics_->joint_states, ros_.present().instead_on(where_));
+}
+
+std::string PoseReader::missing_moveit() const {
+  const std::lock_guard lock(mutex_);
+  std::vector<std::string> topics;
+  for (const NamedTopic& named : intake_.named()) {
+    if (!is_of_moveit(named.delivery)) continue;
+    topics.push_back(ros_dds_name(named.name));
+    for (const auto& [handle, writer] : ros_.present().writers())
+      if (writer.topic == topics.back()) return "";
+  }
+  if (topics.empty()) return "";
+  return fmt::format("there is no publisher of {} {}", fmt::join(topics, " or "),
+                     ros_.present().instead_on(where_));
 }
 
 // Waits for data, for the time at which the intake wants to settle, or for the destructor.
@@ -263,9 +272,7 @@ bool PoseReader::hand_over(PoseBatch& batch) noexcept {
 void PoseReader::log_news() {
   for (const News& news : intake_.take_news()) {
     const std::string instead =
-        news.code == lines::kNoTransforms.code
-            ? fmt::format(" on {}; there is: {}", where_, ros_.present().listed())
-            : "";
+        news.code == lines::kNoTransforms.code ? " " + ros_.present().instead_on(where_) : "";
     log_text(news.level, news.text + instead, news.code);
   }
 }

@@ -3,6 +3,7 @@
 
 #include <fmt/format.h>
 
+#include <cstdlib>
 #include <cstring>
 #include <string_view>
 
@@ -40,6 +41,12 @@ bool is_of_ros_itself(std::string_view topic) {
   for (const std::string_view prefix : {"rq/", "rr/", "rs/"})
     if (topic.starts_with(prefix)) return true;
   return topic == "ros_discovery_info" || topic == "rt/rosout" || topic == "rt/parameter_events";
+}
+
+// The domain that a ROS 2 node started from the same shell would join.
+std::string ros_domain() {
+  const char* const id = std::getenv("ROS_DOMAIN_ID");
+  return id == nullptr || *id == '\0' ? "" : fmt::format(" (ROS_DOMAIN_ID is {} here)", id);
 }
 
 PresentWriter writer_of(const dds_builtintopic_endpoint_t& endpoint) {
@@ -93,6 +100,14 @@ std::string PresentTopics::listed() const {
     topics.push_back(count > 1 ? fmt::format("{} ({} writers)", topic, count) : topic);
   }
   return clearance::listed(topics, kListed);
+}
+
+std::string PresentTopics::instead_on(const std::string& where) const {
+  return fmt::format(
+      "on {}; there is: {}. Nothing is heard across domains{}, networks (--interface; ros meets "
+      "ROS 2 nodes, also those with ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST) or from an rmw that "
+      "is no DDS (rmw_zenoh)",
+      where, listed(), where.find("ROS_DOMAIN_ID") == std::string::npos ? ros_domain() : "");
 }
 
 }  // namespace clearance

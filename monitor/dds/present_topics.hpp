@@ -38,6 +38,9 @@ class PresentTopics {
   // "rt/tf (2), rt/scan", at most ten topics, without those that every node of ROS 2 publishes; "no
   // other program" if no other program publishes.
   [[nodiscard]] std::string listed() const;
+  // Ends each sentence about topics that no program publishes on this network (Participant::where):
+  // "on domain 7, ...; there is: rt/tf. Nothing is heard across ...".
+  [[nodiscard]] std::string instead_on(const std::string& where) const;
 
  private:
   dds_entity_t participant_, reader_;

@@ -43,7 +43,7 @@ std::optional<std::string> wait_for_robot_description(Participant& participant,
       urdf = sample->data;
     present.poll();
     if (urdf || polls != kSayAfterPolls) continue;
-    log_line(lines::kWaitingForDescription, topic, participant.where(), present.listed());
+    log_line(lines::kWaitingForDescription, topic, present.instead_on(participant.where()));
   }
   dds_delete(reader);
   return urdf;

@@ -359,8 +359,7 @@ std::string SensorReader::why_silent(const Sensor& sensor, const SensorStatus& s
     const auto writer = std::ranges::find_if(
         writers, [&](const auto& entry) { return entry.second.topic == name; });
     if (writer == writers.end())
-      return fmt::format("there is no publisher of {} on {}; there is: {}", name, where_,
-                         ros_.present().listed());
+      return fmt::format("there is no publisher of {} {}", name, ros_.present().instead_on(where_));
     const std::string& partition = writer->second.partition;
     if (topic == sensor.topic && status.counts[0] == 0) {
       return fmt::format("{} is published in {} as {}, and no message has come", name,

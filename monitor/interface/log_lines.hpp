@@ -50,6 +50,7 @@ inline constexpr LogLine<Text, Count, Text, Text> kQuestionRefused{
     "question-refused", kWarn, "question {1} of '{0}' is refused ({2}): {3}"};
 inline constexpr LogLine<Text> kQuestionsLeftOut{"questions-left-out", kWarn,
                                                  "{} about refused questions left out"};
+inline constexpr LogLine<Text> kMoveItSilent{"moveit-silent", kWarn, "no MoveIt is heard: {}"};
 inline constexpr LogLine<Text> kMoveItLeftOut{"moveit-left-out", kWarn, "MoveIt's {}"};
 inline constexpr LogLine<Text, Text, Text> kMoveItRefused{
     "moveit-refused", kWarn, "a message of MoveIt on {} changes nothing: {}{}"};
@@ -64,8 +65,8 @@ inline constexpr LogLine<Text> kBodiesSilent{
     "is unknown"};
 inline constexpr LogLine<Text, Count> kSceneResumed{
     "scene-resumed", kInfo, "the scene of {} is resumed: its changes began with revision {:016x}"};
-inline constexpr LogLine<Text, Text, Text> kWaitingForDescription{
-    "waiting-for-description", kWarn, "waiting for {} on {}; there is: {}"};
+inline constexpr LogLine<Text, Text> kWaitingForDescription{"waiting-for-description", kWarn,
+                                                            "waiting for {} {}"};
 inline constexpr LogLine<Text, Text> kDescriptionKept{
     "description-kept", kInfo, "the robot's description from {} is kept as {}"};
 inline constexpr LogLine<Text, Text> kRobotNote{"robot-note", kInfo, "robot '{}': {}"};
@@ -220,8 +221,7 @@ inline constexpr LogLine<Text, double, Text> kShellThick{
 inline constexpr LogLine<Text, Text, std::uint32_t, std::uint32_t> kRobotNotThere{
     "robot-not-there", kError,
     "sensor {} sees through robot '{}' at {} of {} rays that should meet it: the robot, its model "
-    "or "
-    "the sensor is not where it should be. What hangs on the robot is unknown"};
+    "or the sensor is not where it should be. What hangs on the robot is unknown"};
 inline constexpr LogLine<Text, Text> kRobotThere{"robot-there", kInfo,
                                                  "sensor {} sees robot '{}' where its joints say"};
 inline constexpr LogLine<Text, Text, double, double, double, double, double, double, double, Text>

@@ -66,8 +66,9 @@ bool has_card() {
   return found;
 }
 
-// Listens on lo, too. Tried with Cyclone 0.10.2 and the settings of Jazzy's and Humble's nodes:
-// SUBNET meets SUBNET, LOCALHOST, ROS_LOCALHOST_ONLY=1 of either and programs on lo.
+// Listens on lo, too. Tried with Cyclone 0.10.2, Fast DDS 2.9 and the settings of Jazzy's and
+// Humble's nodes: SUBNET meets SUBNET, LOCALHOST, ROS_LOCALHOST_ONLY=1 of either and programs on
+// lo.
 Network network_of_ros(const RosDiscovery& ros) {
   if (ros.range == RosRange::kSystemDefault) return {};
   if (ros.range == RosRange::kOff)
@@ -158,7 +159,7 @@ std::string who_reaches(const DdsOptions& options) {
   const std::string name = interface_of(options).name;
   if (name == "default" && options.peers.empty()) {
     return "every program without a configuration reaches it, and ROS 2 nodes of this machine on "
-           "rmw_cyclonedds with ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST";
+           "rmw_cyclonedds or rmw_fastrtps with ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST";
   }
   if (name != "ros") return "";
   switch (ros_discovery().range) {
@@ -166,11 +167,13 @@ std::string who_reaches(const DdsOptions& options) {
       return "ROS_AUTOMATIC_DISCOVERY_RANGE=OFF: no other program reaches it";
     case RosRange::kLocalhost:
       return "programs of this machine reach it with ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST, with "
-             "ROS_LOCALHOST_ONLY=1 (nodes on rmw_cyclonedds) or with --interface lo; ROS 2 nodes "
-             "without these do not";
+             "ROS_LOCALHOST_ONLY=1 or with --interface lo; of ROS 2 nodes without these, those on "
+             "rmw_fastrtps do, and those on rmw_cyclonedds do not";
     case RosRange::kSubnet:
       return "every program without a configuration reaches it, and every ROS 2 node of this "
-             "machine on rmw_cyclonedds unless its ROS_AUTOMATIC_DISCOVERY_RANGE is OFF";
+             "machine on rmw_cyclonedds or rmw_fastrtps unless its ROS_AUTOMATIC_DISCOVERY_RANGE "
+             "is "
+             "OFF";
     case RosRange::kSystemDefault:
       return "every program without a configuration reaches it";
   }
@@ -239,14 +242,15 @@ std::string how_to_reach(const DdsOptions& options, std::uint32_t domain) {
   if (!who.empty()) return fmt::format("{}, {}", who, on);
   const Network network = network_of(options);
   // Humble's nodes with ROS_LOCALHOST_ONLY=1 name lo themselves, and Cyclone refuses an interface
-  // that is named twice.
+  // that is named twice. Fast DDS does not read the variable.
   const bool is_on_lo = interface_of(options).name == "lo";
   return fmt::format(
       "other programs reach it with CYCLONEDDS_URI='<CycloneDDS><Domain>{}{}</Domain></CycloneDDS>'"
       ", {}{}",
       element("General", general_xml(network)), element("Discovery", discovery_xml(network)), on,
-      is_on_lo ? "; nodes of Humble with ROS_LOCALHOST_ONLY=1 reach it without this, and terminate "
-                 "with it"
+      is_on_lo ? "; nodes of Humble with ROS_LOCALHOST_ONLY=1 reach it without this, and on "
+                 "rmw_cyclonedds terminate with it; other nodes on rmw_fastrtps do not: start it "
+                 "with --interface ros"
                : "");
 }
 

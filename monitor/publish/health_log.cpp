@@ -124,7 +124,8 @@ void HealthLog::log_notes(const clearance_msg_Health& health) {
 // Logs late inputs, then refusals, then the totals. The limit on lines is for a cell that loses all
 // its objects at once.
 void HealthLog::update(const clearance_msg_Health& health,
-                       const std::function<std::string()>& senders_of_joints) {
+                       const std::function<std::string()>& senders_of_joints,
+                       const std::function<std::string()>& missing_moveit) {
   std::size_t logged = 0;
   for (std::uint32_t i = 0; i < health.inputs._length; ++i) {
     const clearance_msg_InputAge& input = health.inputs._buffer[i];
@@ -149,6 +150,9 @@ void HealthLog::update(const clearance_msg_Health& health,
   if (logged > kLinesAtOnce)
     log_line(lines::kMoreLeftOut, counted(logged - kLinesAtOnce, "more line"));
   joints_.update(health.joints, senders_of_joints);
+  if (++samples_ == JointLog::kSilentSamples) {
+    if (const std::string why = missing_moveit(); !why.empty()) log_line(lines::kMoveItSilent, why);
+  }
   log_notes(health);
   log_clock(health);
   log_response(health);

@@ -22,9 +22,10 @@ class HealthLog {
   // the same name.
   void change(const Scene& scene);
   // Called with every sample, in order. `senders_of_joints` names the senders of joint states when
-  // that is needed.
+  // that is needed. `missing_moveit` says that MoveIt's scene has no sender; empty: it has one.
   void update(const clearance_msg_Health& health,
-              const std::function<std::string()>& senders_of_joints);
+              const std::function<std::string()>& senders_of_joints,
+              const std::function<std::string()>& missing_moveit);
 
  private:
   void log_clock(const clearance_msg_Health& health);
@@ -48,6 +49,7 @@ class HealthLog {
   };
   std::map<std::string, Note> notes_;
   JointLog joints_;
+  int samples_ = 0;
   std::uint64_t late_responses_ = 0;
   bool response_is_late_ = false;
   std::uint64_t clock_steps_ = 0;

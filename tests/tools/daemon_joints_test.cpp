@@ -17,6 +17,11 @@ namespace {
 constexpr double kNaN = std::numeric_limits<double>::quiet_NaN();
 const std::vector<std::string> kNames = {"shoulder", "elbow", "push"};
 
+// The cure that the log has for each input without a publisher.
+const std::string kOtherNetworks =
+    "networks (--interface; ros meets ROS 2 nodes, also those with "
+    "ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST)";
+
 class DaemonJoints : public WatchedDaemon {
  protected:
   // `keys` contains further keys of the robot.
@@ -228,8 +233,37 @@ TEST_F(DaemonJoints, ThatNobodySendsAreMissedWithWhatIsThereInstead) {
   EXPECT_TRUE(step_until(
       50, [] {},
       told("joints-silent", {"3 joints of arm", "shoulder, elbow, push", "rt/tf", "interface lo",
-                             "domain " + std::to_string(*dds.domain), "ros meets ROS 2 nodes",
-                             "ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST"})))
+                             "domain " + std::to_string(*dds.domain), kOtherNetworks})))
+      << daemon->output();
+}
+
+// Whatever is missing, a reader of the log is told of other networks in the same words.
+TEST_F(DaemonJoints, TransformsImagesAndScenesThatNobodySendsAreMissedWithTheSameCure) {
+  watch(
+      "name: missing\nunits: {length: m, angle: rad}\nrate_hz: 50\n"
+      "ros2: {world_frame: map, planning_scene: true, collision_object: true}\n"
+      "robots: [{name: arm, urdf: scara.urdf}]\n"
+      "objects: [{name: cart, frame: cart_link, sphere: {radius: 0.1}}]\n"
+      "sensors: [{name: eye, depth_image: /cam/image, size: [65, 49], range: [0.3, 4], "
+      "depth_error: {constant: 0.002}, mount: {pose: {xyz: [0, 0, 3]}}}]\n"
+      "pairs: [{between: [arm, cart]}, {between: [arm, eye]}, {between: [arm, moveit]}]\n");
+  const auto is_missed = [&](const std::string& code, const std::string& what) {
+    return step_until(
+        50, [] {},
+        told(code, {what, "domain " + std::to_string(*dds.domain), "there is: no other program",
+                    kOtherNetworks}));
+  };
+  EXPECT_TRUE(is_missed("joints-silent", "of rt/joint_states")) << daemon->output();
+  EXPECT_TRUE(is_missed("no-transforms", "no transform has come")) << daemon->output();
+  EXPECT_TRUE(is_missed("frames-silent", "no publisher of rt/cam/image")) << daemon->output();
+  EXPECT_TRUE(is_missed("moveit-silent", "rt/collision_object or rt/planning_scene"))
+      << daemon->output();
+}
+
+TEST_F(DaemonJoints, ADescriptionThatNobodySendsIsMissedWithTheSameCure) {
+  daemon.emplace(kDaemon, with({"--robot-description", "/robot_description"}, dds_arguments(dds)));
+  EXPECT_TRUE(eventually(
+      told("waiting-for-description", {"rt/robot_description on domain", kOtherNetworks})))
       << daemon->output();
 }
 

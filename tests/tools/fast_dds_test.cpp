@@ -18,7 +18,7 @@ class FastDds : public WatchedDaemon {
  protected:
   void start_partner(const std::vector<std::string>& joints) {
     partner.emplace(places::programs() + "/fast_dds_partner",
-                    with({std::to_string(*dds.domain), dds.partition}, joints));
+                    with({"lo", std::to_string(*dds.domain), dds.partition}, joints));
   }
   // The last message of this topic that the partner has printed; null: none.
   json last(const std::string& topic) const {

@@ -1,17 +1,24 @@
 // Programs that meet the daemon on one machine and on two. The daemon has ROS 2's variables, and
-// they have the settings that rmw_cyclonedds makes of them. Each machine is a network namespace.
+// they have the settings that rmw_cyclonedds and rmw_fastrtps make of them. Each machine is a
+// network namespace.
 #include <gtest/gtest.h>
 #include <net/if.h>
 #include <sys/ioctl.h>
 #include <sys/socket.h>
 #include <unistd.h>
 
+#include <cmath>
+#include <csignal>
+#include <cstdlib>
 #include <cstring>
+#include <filesystem>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "monitor/participant/domain_configuration.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
+#include "tests/shared/scratch_folder.hpp"
 #include "tests/shared/take_next.hpp"
 #include "tests/tools/lossy_network.hpp"
 #include "tests/tools/running_cell.hpp"
@@ -22,6 +29,10 @@ namespace {
 using test::ChildProcess;
 using test::eventually;
 using Variables = std::vector<std::pair<std::string, std::string>>;
+using Arguments = std::vector<std::string>;
+const Arguments kNoArguments;
+
+const std::string kFastDds = test::places::programs() + "/fast_dds_partner";
 
 // A domain that nothing else in this process configures.
 constexpr std::uint32_t kDomain = 118;
@@ -72,12 +83,20 @@ class RosDiscoveryNetwork : public testing::Test {
       if (!machine->refusal().empty()) GTEST_SKIP() << machine->refusal();
     }
     wire.emplace(here.frames(), there.frames());
+    test::write_text(folder / "scara.urdf", test::kScaraUrdf);
+    test::write_text(
+        folder / "cell.yaml",
+        "name: ros\nunits: {length: m, angle: rad}\nrate_hz: 50\n"
+        "robots: [{name: arm, urdf: scara.urdf, age_limit_ms: 1000}]\n"
+        "objects: [{name: wall, fixed: true, half_space: {normal: [-1, 0, 0], offset: -5}}]\n"
+        "pairs: [{between: [arm, wall]}]\nros2: {minimum_distance: true}\n");
   }
-  void start(const Variables& variables, const std::vector<std::string>& arguments = {}) {
+  void start(const Variables& variables, const Arguments& arguments = {}) {
     here.run([&] {
-      daemon.emplace(test::kDaemon,
-                     test::with({cell.path(), "--domain", std::to_string(kDomain)}, arguments),
-                     test::ChildOptions{.environment = variables});
+      daemon.emplace(
+          test::kDaemon,
+          test::with({folder / "cell.yaml", "--domain", std::to_string(kDomain)}, arguments),
+          test::ChildOptions{.environment = variables});
     });
     ASSERT_TRUE(eventually([&] { return daemon->told("how-to-reach"); })) << daemon->output();
   }
@@ -85,6 +104,26 @@ class RosDiscoveryNetwork : public testing::Test {
     bool came = false;
     machine.run([&] { came = hears_health(settings); });
     return came;
+  }
+  // True if the positions that a node on Fast DDS sends reach the daemon, and the distance that
+  // follows from them reaches the node. The wall is 2.95 m from the finger before it is pushed out.
+  bool meets_fast_dds(test::NetworkNamespace& machine, const std::string& network) {
+    const double pushed = 0.01 * ++nodes;
+    std::optional<ChildProcess> node;
+    machine.run([&] {
+      node.emplace(kFastDds,
+                   std::vector<std::string>{network, std::to_string(kDomain), "", "shoulder=0",
+                                            "elbow=0", "push=" + std::to_string(pushed)});
+    });
+    const bool met = eventually([&] {
+      const std::string output = node->output(), before = "\"message\":";
+      const std::size_t at = output.rfind(before);
+      if (at == std::string::npos) return false;
+      return std::abs(std::atof(&output[at + before.size()]) - (2.95 - pushed)) < 1e-9;
+    });
+    node->signal(SIGTERM);
+    node->wait();
+    return met;
   }
   // The settings that the daemon's second line proposes.
   [[nodiscard]] std::string proposed() const {
@@ -97,8 +136,9 @@ class RosDiscoveryNetwork : public testing::Test {
 
   test::NetworkNamespace here{1}, there{2};
   std::optional<test::LossyWire> wire;
-  test::CellFile cell{test::small_cell("ros")};
+  test::ScratchFolder folder;
   std::optional<ChildProcess> daemon;
+  int nodes = 0;  // on Fast DDS, so far
 };
 
 TEST_F(RosDiscoveryNetwork, WhereRosIsSetUpTheDaemonMeetsEveryNodeOfItsMachine) {
@@ -107,7 +147,8 @@ TEST_F(RosDiscoveryNetwork, WhereRosIsSetUpTheDaemonMeetsEveryNodeOfItsMachine) 
     EXPECT_TRUE(hears(here, node)) << node << '\n' << daemon->output();
   EXPECT_TRUE(hears(there, kSubnet)) << daemon->output();
   EXPECT_TRUE(hears(here, domain_configuration({.interface = "lo"}))) << "a client elsewhere on lo";
-  EXPECT_TRUE(daemon->told("how-to-reach", {"every ROS 2 node of this machine on rmw_cyclonedds"}))
+  EXPECT_TRUE(daemon->told("how-to-reach",
+                           {"every ROS 2 node of this machine on rmw_cyclonedds or rmw_fastrtps"}))
       << daemon->output();
 }
 
@@ -127,6 +168,30 @@ TEST_F(RosDiscoveryNetwork, TheVariablesForThisMachineMeanWhatTheyMeanForNodes) 
     EXPECT_TRUE(daemon->told("how-to-reach", {"programs of this machine reach it with"}))
         << daemon->output();
   }
+}
+
+// Fast DDS listens on all cards, so that SUBNET is met where LOCALHOST is asked for, too.
+TEST_F(RosDiscoveryNetwork, NodesOnFastDdsAreMetOnEveryInterfaceButLo) {
+  if (!std::filesystem::exists(kFastDds)) GTEST_SKIP() << "Fast DDS is not installed";
+  start({{"ROS_DISTRO", "jazzy"}});
+  EXPECT_TRUE(meets_fast_dds(there, "subnet")) << daemon->output();
+  for (const auto& [variables, arguments] :
+       {std::pair(Variables{{"ROS_DISTRO", "jazzy"}}, kNoArguments),
+        std::pair(Variables{{"ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST"}}, kNoArguments),
+        std::pair(Variables{}, Arguments{"--interface", "default"})}) {
+    start(variables, arguments);
+    for (const char* node : {"subnet", "localhost", "humble"})
+      EXPECT_TRUE(meets_fast_dds(here, node)) << node << '\n' << daemon->output();
+  }
+}
+
+TEST_F(RosDiscoveryNetwork, ADaemonOnLoMeetsNodesOnFastDdsThatAreOnLoOnly) {
+  if (!std::filesystem::exists(kFastDds)) GTEST_SKIP() << "Fast DDS is not installed";
+  start({});
+  EXPECT_TRUE(meets_fast_dds(here, "humble")) << daemon->output();
+  EXPECT_TRUE(daemon->told("how-to-reach", {"other nodes on rmw_fastrtps do not: start it with "
+                                            "--interface ros"}))
+      << daemon->output();
 }
 
 TEST_F(RosDiscoveryNetwork, StaticPeersAreFoundOnAnotherMachine) {
@@ -157,8 +222,12 @@ TEST_F(RosDiscoveryNetwork, TheProposedSettingsReachADaemonOnLoopback) {
   start({});
   for (const std::string& node : {kSubnet, kLocalhost, kHumble})
     EXPECT_TRUE(hears(here, node + "," + proposed())) << proposed();
-  EXPECT_TRUE(hears(here, kHumbleLocalhost)) << "without them, as with them the node ends";
-  EXPECT_TRUE(daemon->told("how-to-reach", {"Humble with ROS_LOCALHOST_ONLY=1 reach it without"}))
+  EXPECT_TRUE(hears(here, kHumbleLocalhost)) << "without them";
+  here.run([&] {
+    EXPECT_LT(dds_create_domain(kDomain, (kHumbleLocalhost + "," + proposed()).c_str()), 0);
+  });
+  EXPECT_TRUE(daemon->told("how-to-reach", {"Humble with ROS_LOCALHOST_ONLY=1 reach it without "
+                                            "this, and on rmw_cyclonedds terminate with it"}))
       << daemon->output();
 }
 

@@ -54,7 +54,6 @@ KEYS = {
 }
 OF_COLCON = {"g++", "ninja-build"}  # or of another compiler and build program
 
-
 # The keywords that Jazzy's classes of launch and launch_ros take, as far as these launch files may need them.
 OF_ACTION = {"condition"}
 OF_PROCESS = OF_ACTION | {"cmd", "name", "cwd", "env", "additional_env", "shell", "output", "log_cmd", "on_exit", "respawn", "respawn_delay", "sigterm_timeout"}
@@ -190,6 +189,18 @@ def placed_panels(place, panels):
     if isinstance(place, dict):
         return [each for half in ("first", "second") for each in placed_panels(place[half], panels)]
     return [place, *(each for tab in panels[place].get("tabs", []) for each in placed_panels(tab["layout"], panels))]
+
+
+# Prints the fields of each message as Debian's rosidl reads them.
+ROSIDL = """import json, pathlib, sys; from rosidl_adapter.parser import parse_message_file as read
+print(json.dumps({path.stem: [[str(each.type), each.name] for each in read("clearance_msgs", str(path)).fields] for path in pathlib.Path(sys.argv[1]).iterdir()}))"""
+WORDS = {"double": "float64", "long": "int32", "unsigned long": "uint32", "long long": "int64", "unsigned long long": "uint64", "octet": "uint8", "boolean": "bool"}
+
+
+def as_message(kind, size):
+    """A type of the IDL in the words of a .msg file."""
+    inner, bound = re.fullmatch(r"(?:sequence<)?(.+?)(?:(?:, (\d+))?>)?", kind).groups()
+    return WORDS.get(inner, inner.replace("::msg::dds_::", "/").replace("string<", "string<=").removesuffix("_")) + (f"[<={bound}]" if bound else "[]" if kind.startswith("sequence") else f"[{size}]" if size else "")
 
 
 def started(**given):
@@ -376,6 +387,13 @@ class RosPackages(unittest.TestCase):
         listed = re.findall(r"msg/\w+\.msg", (MESSAGES / "CMakeLists.txt").read_text())
         self.assertEqual(sorted(listed), sorted(f"msg/{path.name}" for path in (MESSAGES / "msg").iterdir()))
         self.assertGreater(len(listed), 20)
+
+    @unittest.skipUnless(pathlib.Path("/usr/lib/python3/dist-packages/rosidl_adapter").is_dir(), "python3-rosidl is missing: tools/setup --tests")
+    def test_rosidl_of_debian_reads_the_fields_that_dds_carries(self):
+        read = subprocess.run(["/usr/bin/python3", "-c", ROSIDL, MESSAGES / "msg"], capture_output=True, text=True, check=True).stdout
+        structs = re.findall(r"struct (\w+)_ {(.*?)\n};", (BUILD / "idl/clearance_msgs.idl").read_text(), re.DOTALL)
+        fields = {name: [[as_message(kind, size), each] for kind, each, size in re.findall(r"  (.+) (\w+?)(?:\[(\d+)\])?;", body)] for name, body in structs}
+        self.assertEqual(json.loads(read), fields)
 
 
 if __name__ == "__main__":

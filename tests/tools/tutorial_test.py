@@ -1,5 +1,7 @@
 """The tutorials: their commands are run one after another, as a reader pastes them, and print what the pages show.
 
+The pages about ROS 2 show commands and parts of cells in their sentences, too. Each is run or read by itself.
+
 usage: tutorial_test.py BUILD
 """
 
@@ -99,6 +101,91 @@ class Tutorial(unittest.TestCase):
         slow = stop + v * v / a
         for figure in (f"0.5 * {delay:.3f} + {v * v / (2 * a):.3f} = {stop:.3f} m", f"{stop:.3f} + {v * v / a:.2f} = {slow:.3f} m"):
             self.assertIn(figure, text)
+
+
+ROS_PAGES = ("../idl/ROS.md", "../idl/SIMULATED_TIME.md", "ros2/README.md")
+ARM = ROOT / "config/cells/seven_joint_arm/arm"
+# What the parts of cells are parts of, by key.
+CELL = {
+    "name": "page",
+    "units": "{length: m, angle: rad}",
+    "rate_hz": "50",
+    "robots": f"[{{name: arm, urdf: {ARM}.urdf, srdf: {ARM}.srdf}}]",
+    "pairs": "[{between: [arm, arm]}]",
+}
+# Commands that need a ROS 2, and those that only copy. A new one is either ours, and run here, or belongs into this list.
+NOT_RUN = {
+    "cp -r ~/clearance/share/clearance/ros2/* ~/workspace/src/",
+    "cd ~/workspace && colcon build && . install/setup.sh",
+    "colcon build --base-paths src/clearance/tools/ros2",
+    "colcon build --packages-skip clearance_moveit",
+    "colcon list",
+    "ros2 bag play",
+    "ros2 bag play BAG",
+    "ros2 bag play BAG --clock",
+    "ros2 bag record",
+    "ros2 bag record -a",
+    "ros2 launch",
+    "ros2 launch clearance_ros clearance.launch.py cell:=cell.yaml rviz:=true",
+    "ros2 node list",
+    "ros2 topic echo",
+    "ros2 topic echo /clearance/zones",
+    "ros2 topic info",
+    "ros2 topic list",
+    "tools/check --ros2",  # tools/RosPackages
+}
+NOT_OURS = {"--base-paths", "--clock", "--show-args", "--skip-keys"}  # options
+
+
+def shown(page):
+    """All that a page shows as code: the lines of its blocks without their comments, and what stands in its sentences."""
+    in_blocks = [line.partition("  #")[0].strip() for language, text in blocks(page) if language != "yaml" for line in text.splitlines()]
+    sentences = re.sub(r"^```.*?^```$", "", text_of(page), flags=re.DOTALL | re.MULTILINE)
+    return in_blocks + [" ".join(code.split()) for code in re.findall(r"`([^`]+)`", sentences)]
+
+
+class RosPages(unittest.TestCase):
+    def setUp(self):
+        self.folder = tempfile.TemporaryDirectory()
+        self.addCleanup(self.folder.cleanup)
+        joints = [*(f"joint{i}" for i in range(1, 8)), "finger"]
+        rows = [["t_ns", *joints], *([str(i * 10_000_000), *["0.01"] * len(joints)] for i in range(3))]
+        (pathlib.Path(self.folder.name) / "BAG").write_text("".join(",".join(row) + "\n" for row in rows))
+
+    def write_cell(self, part=""):
+        if "tracked_bodies" in part:  # is refused without a person
+            part += "\nrobots: [{name: arm, person: {stature: 1.75, error: 0.1}}]"
+        keys = re.findall(r"^(\w+):", part, re.MULTILINE)
+        rest = "".join(f"{key}: {value}\n" for key, value in CELL.items() if key not in keys)
+        (pathlib.Path(self.folder.name) / "CELL").write_text(rest + part + "\n")
+
+    def run_here(self, words):
+        done = subprocess.run([f"{BUILD}/bin/{words[0]}", *words[1:]], cwd=self.folder.name, capture_output=True, text=True, timeout=60)
+        self.assertEqual(done.returncode, 0, f"{words}\n{done.stdout}{done.stderr}")
+        return done.stdout
+
+    def test_each_command_of_ours_runs_and_each_other_one_is_listed(self):
+        commands = {code for page in ROS_PAGES for code in shown(page) if re.match(r"(clearanced|clearance-\w+|ros2|colcon|rosdep|cp|cd|tools/\w+) ", code)}
+        ours = {code for code in commands if code.startswith("clearance")}
+        self.assertEqual(commands - ours, NOT_RUN)
+        self.write_cell()
+        for words in map(str.split, sorted(ours)):
+            words += [] if "CELL" in words or "BAG" in words else [{"clearanced": "CELL", "clearance-replay": "BAG"}[words[0]]]
+            self.run_here(words + (["--check"] if words[0] == "clearanced" else ["--cell", "CELL"]))
+        self.assertEqual(len(ours), 4)
+
+    def test_each_option_is_one_of_ours_or_listed(self):
+        told = "".join(self.run_here([*program, "--help"]) for program in (["clearanced"], ["clearance-replay", "check"]))
+        options = {code.split()[0] for page in ROS_PAGES for code in shown(page) if code.startswith("--")}
+        self.assertEqual({each for each in options if not re.search(rf"(^|[ ,]){each}\b", told, re.MULTILINE)}, NOT_OURS)
+
+    def test_each_part_of_a_cell_is_read(self):
+        parts = {code for page in ROS_PAGES for code in shown(page) if re.match(r"\w+: [{[]", code)}
+        parts |= {text for page in ROS_PAGES for language, text in blocks(page) if language == "yaml"}
+        for part in sorted(parts):
+            self.write_cell(part)
+            self.run_here(["clearanced", "CELL", "--check"])
+        self.assertEqual(len(parts), 6)
 
 
 if __name__ == "__main__":

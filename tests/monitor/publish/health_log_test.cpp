@@ -14,6 +14,8 @@ namespace clearance::test {
 namespace {
 
 // Scenes with a cup and a bowl, in this order or in the other.
+const std::function<std::string()> kNothing = [] { return std::string(); };
+
 class HealthLogTest : public testing::Test {
  protected:
   static Scene scene_of_names(const std::vector<std::string>& names) {
@@ -40,14 +42,14 @@ class HealthLogTest : public testing::Test {
     health.overruns = overruns;
     health.inputs._buffer = inputs.data();
     health.inputs._length = static_cast<std::uint32_t>(inputs.size());
-    log_.update(health, [] { return std::string(); });
+    log_.update(health, kNothing, kNothing);
   }
   void response(std::uint64_t late_responses, clearance_msg_InputResponse* slowest = nullptr) {
     clearance_msg_Health health{};
     health.late_responses = late_responses;
     health.responses._buffer = slowest;
     health.responses._length = slowest == nullptr ? 0 : 1;
-    log_.update(health, [] { return std::string(); });
+    log_.update(health, kNothing, kNothing);
   }
   [[nodiscard]] std::size_t lines(const std::string& code) const {
     return logged_->count("[" + code + "]");

@@ -2,7 +2,10 @@
 // DDS or with us. It writes joint states and reads Clearance's messages for ROS 2, whose layouts
 // are written down here once more, by hand, from the published definitions.
 //
-// usage: fast_dds_partner DOMAIN PARTITION JOINT=POSITION...
+// usage: fast_dds_partner NETWORK DOMAIN PARTITION JOINT=POSITION...
+//   NETWORK: lo; or what rmw_fastrtps asks of Fast DDS: subnet, localhost (of Jazzy), humble (its
+//            ROS_LOCALHOST_ONLY=1)
+//   PARTITION: may be empty, as ROS 2's is
 // It prints one line of JSON for each message that it hears, until it is ended.
 #include <fastcdr/Cdr.h>
 #include <fastcdr/FastBuffer.h>
@@ -12,6 +15,7 @@
 #include <array>
 #include <chrono>
 #include <cmath>
+#include <csignal>
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
@@ -185,19 +189,50 @@ Bytes joint_state(const std::vector<std::string>& names, const std::vector<doubl
   return bytes;
 }
 
-// On loopback only. The first ports of the domain are those of the other programs.
-fdds::DomainParticipant* join(std::uint32_t domain) {
-  fdds::DomainParticipantQos qos = fdds::PARTICIPANT_QOS_DEFAULT;
-  const auto udp = std::make_shared<eprosima::fastdds::rtps::UDPv4TransportDescriptor>();
-  udp->interfaceWhiteList.emplace_back("127.0.0.1");
+// The datagrams and the shared memory that take the place of Fast DDS's own choice.
+std::shared_ptr<Udp> use_own_transports(fdds::DomainParticipantQos& qos, bool shares_memory) {
+  const auto udp = std::make_shared<Udp>();
   qos.transport().use_builtin_transports = false;
+  if (shares_memory) qos.transport().user_transports.push_back(std::make_shared<SharedMemory>());
   qos.transport().user_transports.push_back(udp);
+  return udp;
+}
+
+// On loopback only. The first ports of the domain are those of the other programs.
+void join_loopback(fdds::DomainParticipantQos& qos, std::uint32_t domain) {
+  use_own_transports(qos, false)->interfaceWhiteList.emplace_back("127.0.0.1");
   constexpr std::uint32_t kFirst = 7400, kOfADomain = 250, kUnicast = 10, kOfAProgram = 2;
   for (std::uint32_t i = 0; i < 20; ++i) {
     rtps::Locator_t peer(LOCATOR_KIND_UDPv4,
                          kFirst + kOfADomain * domain + kUnicast + kOfAProgram * i);
     rtps::IPLocator::setIPv4(peer, "127.0.0.1");
     qos.wire_protocol().builtin.initialPeersList.push_back(peer);
+  }
+}
+
+// Jazzy's ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST. The locator without a kind stands for no
+// multicast, the peer without a port for the first 32 programs of the domain.
+void join_localhost(fdds::DomainParticipantQos& qos) {
+  auto& discovery = qos.wire_protocol().builtin;
+  discovery.metatrafficMulticastLocatorList.clear();
+  discovery.metatrafficUnicastLocatorList.push_back(rtps::Locator_t());
+  use_own_transports(qos, true)->maxInitialPeersRange = 32;
+  rtps::Locator_t peer;
+  rtps::IPLocator::setIPv4(peer, "127.0.0.1");
+  discovery.initialPeersList.push_back(peer);
+}
+
+// Returns null for a network that is none.
+fdds::DomainParticipant* join(const std::string& network, std::uint32_t domain) {
+  fdds::DomainParticipantQos qos = fdds::PARTICIPANT_QOS_DEFAULT;
+  if (network == "lo") {
+    join_loopback(qos, domain);
+  } else if (network == "localhost") {
+    join_localhost(qos);
+  } else if (network == "humble") {
+    use_own_transports(qos, true)->interfaceWhiteList.emplace_back("127.0.0.1");
+  } else if (network != "subnet") {
+    return nullptr;
   }
   return fdds::DomainParticipantFactory::get_instance()->create_participant(domain, qos);
 }
@@ -210,7 +245,7 @@ fdds::Topic* make_topic(fdds::DomainParticipant* participant, const char* name, 
 fdds::DataReader* make_reader(fdds::DomainParticipant* participant, const std::string& partition,
                               const Heard& of) {
   fdds::SubscriberQos subscriber = fdds::SUBSCRIBER_QOS_DEFAULT;
-  subscriber.partition().push_back(partition.c_str());
+  if (!partition.empty()) subscriber.partition().push_back(partition.c_str());
   fdds::DataReaderQos qos = fdds::DATAREADER_QOS_DEFAULT;
   qos.reliability().kind = fdds::RELIABLE_RELIABILITY_QOS;
   qos.durability().kind =
@@ -222,7 +257,7 @@ fdds::DataReader* make_reader(fdds::DomainParticipant* participant, const std::s
 
 fdds::DataWriter* make_writer(fdds::DomainParticipant* participant, const std::string& partition) {
   fdds::PublisherQos publisher = fdds::PUBLISHER_QOS_DEFAULT;
-  publisher.partition().push_back(partition.c_str());
+  if (!partition.empty()) publisher.partition().push_back(partition.c_str());
   fdds::DataWriterQos qos = fdds::DATAWRITER_QOS_DEFAULT;
   qos.reliability().kind = fdds::RELIABLE_RELIABILITY_QOS;
   qos.durability().kind = fdds::VOLATILE_DURABILITY_QOS;
@@ -249,17 +284,21 @@ void print_new(fdds::DataReader* reader, const Heard& of) {
   }
 }
 
+volatile std::sig_atomic_t ended = 0;
+
 }  // namespace
 
 int main(int argc, char** argv) {
-  if (argc < 3) return 2;
+  if (argc < 4) return 2;
   fdds::DomainParticipant* const participant =
-      join(static_cast<std::uint32_t>(std::strtoul(argv[1], nullptr, 10)));
+      join(argv[1], static_cast<std::uint32_t>(std::strtoul(argv[2], nullptr, 10)));
   if (participant == nullptr) return 1;
-  const std::string partition = argv[2];
+  // Fast DDS removes its files of /dev/shm only as it leaves.
+  std::signal(SIGTERM, [](int) { ended = 1; });
+  const std::string partition = argv[3];
   std::vector<std::string> names;
   std::vector<double> positions;
-  for (int i = 3; i < argc; ++i) {
+  for (int i = 4; i < argc; ++i) {
     const std::string given = argv[i];
     const std::size_t value = given.find('=') + 1;
     names.push_back(given.substr(0, value - 1));
@@ -269,7 +308,7 @@ int main(int argc, char** argv) {
   for (const Heard& each : kHeard)
     readers.emplace_back(make_reader(participant, partition, each), &each);
   fdds::DataWriter* const writer = names.empty() ? nullptr : make_writer(participant, partition);
-  for (;;) {
+  while (ended == 0) {
     if (writer != nullptr) {
       Bytes bytes = joint_state(names, positions);
       writer->write(&bytes);
@@ -278,4 +317,6 @@ int main(int argc, char** argv) {
     std::fflush(stdout);
     std::this_thread::sleep_for(std::chrono::milliseconds(10));
   }
+  participant->delete_contained_entities();
+  fdds::DomainParticipantFactory::get_instance()->delete_participant(participant);
 }

@@ -13,13 +13,17 @@
 #define CLEARANCE_FAST_DDS_3
 #include <fastdds/dds/core/ReturnCode.hpp>
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.hpp>
+#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.hpp>
 #include <fastdds/utils/IPLocator.hpp>
 #else
 #include <fastdds/rtps/transport/UDPv4TransportDescriptor.h>
+#include <fastdds/rtps/transport/shared_mem/SharedMemTransportDescriptor.h>
 #endif
 
 namespace fdds = eprosima::fastdds::dds;
 using Bytes = std::vector<char>;
+using Udp = eprosima::fastdds::rtps::UDPv4TransportDescriptor;
+using SharedMemory = eprosima::fastdds::rtps::SharedMemTransportDescriptor;
 
 #ifdef CLEARANCE_FAST_DDS_3
 namespace rtps = eprosima::fastdds::rtps;

@@ -1,7 +1,7 @@
 // Distance queries of two posed parts: of their convex bodies, or of the leaves of an octree.
 #pragma once
 
-#include "posed_parts.hpp"
+#include "posed_part.hpp"
 
 #include <octomap/octomap.h>
 #include <algorithm>

@@ -12,17 +12,6 @@ Pose pose_of(const Eigen::Isometry3d& place) {
   return pose;
 }
 
-Box placed(const Box& box, const Pose& pose) noexcept {
-  if (!(box.high - box.low).allFinite()) return {};
-  const clearance::Mat3 rotation = clearance::rotation_matrix(pose.orientation);
-  const Vec3 centre = rotation * (0.5 * (box.low + box.high)) + pose.position;
-  Vec3 half = rotation.cwiseAbs() * (0.5 * (box.high - box.low));
-  half.array() += 1e-14 * (box.low.norm() + box.high.norm() + pose.position.norm());
-  // No number: the query says that nothing is known, so it has to be made.
-  if (!(centre - half).allFinite() || !(centre + half).allFinite()) return {};
-  return {centre - half, centre + half};
-}
-
 void PosedParts::add(const std::shared_ptr<const ShapeParts>& shape,
                      const Eigen::Isometry3d& place) {
   const Pose pose = pose_of(place);

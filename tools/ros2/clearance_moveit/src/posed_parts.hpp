@@ -3,8 +3,6 @@
 
 #include "shape_parts.hpp"
 
-#include <core/pose.hpp>
-#include <cstdint>
 #include <memory>
 #include <string>
 #include <vector>
@@ -13,8 +11,6 @@
 #include <moveit/robot_state/attached_body.hpp>
 
 namespace clearance_moveit {
-
-using clearance::Pose;
 
 // A link, an attached body or an object of the world. Parts of one owner are never checked against
 // each other.
@@ -30,19 +26,6 @@ struct Owner {
   }
 };
 
-struct PosedPart {
-  std::shared_ptr<const ShapeParts> shape;
-  // The only body of the part; null: the part is a whole octree, or nothing stands for the shape.
-  const clearance::ConvexBody* body = nullptr;
-  Pose world_from_part;  // or from the frame of its link, where a function says so
-  std::uint32_t owner = 0;
-
-  bool operator==(const PosedPart& other) const {
-    return shape == other.shape && body == other.body && owner == other.owner &&
-           clearance::same_pose(world_from_part, other.world_from_part);
-  }
-};
-
 struct PosedParts {
   std::vector<Owner> owners;
   std::vector<PosedPart> parts;
@@ -55,7 +38,5 @@ struct PosedParts {
 };
 
 [[nodiscard]] Pose pose_of(const Eigen::Isometry3d& place);
-// The box around a body at a pose, rounding included.
-[[nodiscard]] Box placed(const Box& box, const Pose& pose) noexcept;
 
 }  // namespace clearance_moveit

@@ -1,41 +1,13 @@
 // The convex bodies that stand for a shape of MoveIt in distance queries.
 #pragma once
 
-#include <core/convex_body.hpp>
+#include "posed_part.hpp"
+
 #include <memory>
-#include <string>
-#include <vector>
 
 #include <geometric_shapes/shapes.h>
 
 namespace clearance_moveit {
-
-using clearance::Vec3;
-
-// A box along the axes of its frame, m.
-struct Box {
-  Vec3 low = Vec3::Constant(-clearance::kInfinity), high = Vec3::Constant(clearance::kInfinity);
-};
-
-// The distance of two boxes of one frame, m; 0 if they overlap.
-[[nodiscard]] inline double gap(const Box& a, const Box& b) noexcept {
-  return (a.low - b.high).cwiseMax(b.low - a.high).cwiseMax(0.0).norm();
-}
-[[nodiscard]] inline bool overlap(const Box& a, const Box& b) noexcept {
-  return (a.low.array() <= b.high.array()).all() && (b.low.array() <= a.high.array()).all();
-}
-
-struct ShapeParts {
-  // In the frame of the shape, which their union contains. Empty: see `fault`. For octrees, below.
-  std::vector<clearance::ConvexBody> bodies;
-  std::vector<Box> boxes;   // one around each body
-  double mesh_error = 0.0;  // m: no point of the bodies is farther than this from the mesh
-  // An octree is read while it is checked, since its owner may change it at any time. Then `bodies`
-  // has a cube at the origin for each depth, from the root down.
-  std::shared_ptr<const octomap::OcTree> octree;
-  std::string
-      fault;  // not empty: nothing stands for the shape, so every check of it is a collision
-};
 
 // Returns the parts of a shape with MoveIt's own scale and padding (Shape::scaleAndPadd). To
 // split a mesh may take seconds: the process keeps the parts of its last meshes by their content.
