@@ -191,7 +191,7 @@ std::string PoseReader::senders_of_joints() const {
 }
 
 std::string PoseReader::missing_moveit() const {
-  const std::lock_guard lock(mutex_);
+  const Lock lock(mutex_);
   std::vector<std::string> topics;
   for (const NamedTopic& named : intake_.named()) {
     if (!is_of_moveit(named.delivery)) continue;

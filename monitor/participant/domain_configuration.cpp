@@ -171,9 +171,8 @@ std::string who_reaches(const DdsOptions& options) {
              "rmw_fastrtps do, and those on rmw_cyclonedds do not";
     case RosRange::kSubnet:
       return "every program without a configuration reaches it, and every ROS 2 node of this "
-             "machine on rmw_cyclonedds or rmw_fastrtps unless its ROS_AUTOMATIC_DISCOVERY_RANGE "
-             "is "
-             "OFF";
+             "machine on rmw_cyclonedds or rmw_fastrtps unless it has "
+             "ROS_AUTOMATIC_DISCOVERY_RANGE=OFF";
     case RosRange::kSystemDefault:
       return "every program without a configuration reaches it";
   }
