@@ -1,7 +1,5 @@
 #include "monitor/interface/report.hpp"
 
-#include "monitor/interface/report_fields.hpp"
-
 namespace clearance {
 
 const char* name(PairStatus status) noexcept {
@@ -108,28 +106,6 @@ const char* name(SeparationValidity validity) noexcept {
       return "absent";
   }
   return "";
-}
-
-const char* word(Meaning meaning, std::uint64_t value) noexcept {
-  const auto of = [value]<class Enumeration>(Enumeration last) {
-    return value <= static_cast<std::uint64_t>(last) ? name(static_cast<Enumeration>(value)) : "";
-  };
-  switch (meaning) {
-    case Meaning::kPairStatus:
-      return of(PairStatus::kAbsent);
-    case Meaning::kZoneCause:
-      return of(ZoneCause::kNoShare);
-    case Meaning::kValidity:
-      return of(SeparationValidity::kAbsent);
-    case Meaning::kContactStatus:
-      return of(ContactStatus::kAbsent);
-    case Meaning::kContactEnded:
-      return of(ContactEnded::kByCycle);
-    case Meaning::kGradientStatus:
-      return of(GradientStatus::kPartsCompared);
-    default:
-      return "";
-  }
 }
 
 }  // namespace clearance

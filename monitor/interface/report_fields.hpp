@@ -9,6 +9,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <limits>
 #include <string_view>
 #include <type_traits>
 
@@ -34,11 +35,26 @@ enum class Meaning : std::uint8_t {
   kContactEnded,
   kDelivery,  // sender, time and inputs of the message: not a result of the tick
 };
-[[nodiscard]] constexpr bool is_enumeration(Meaning meaning) noexcept {
-  return meaning >= Meaning::kPairStatus && meaning <= Meaning::kContactEnded;
+// The last value of an enumeration; of any other meaning, the largest number.
+[[nodiscard]] constexpr std::uint64_t last_value(Meaning meaning) noexcept {
+  const auto number = [](auto last) { return static_cast<std::uint64_t>(last); };
+  switch (meaning) {
+    case Meaning::kPairStatus:
+      return number(PairStatus::kAbsent);
+    case Meaning::kZoneCause:
+      return number(ZoneCause::kNoShare);
+    case Meaning::kValidity:
+      return number(SeparationValidity::kAbsent);
+    case Meaning::kGradientStatus:
+      return number(GradientStatus::kPartsCompared);
+    case Meaning::kContactStatus:
+      return number(ContactStatus::kAbsent);
+    case Meaning::kContactEnded:
+      return number(ContactEnded::kByCycle);
+    default:
+      return std::numeric_limits<std::uint64_t>::max();
+  }
 }
-// The word for a value of an enumeration, and "" for any other value.
-[[nodiscard]] const char* word(Meaning meaning, std::uint64_t value) noexcept;
 
 // Passed to the visitor beside the values.
 struct Field {

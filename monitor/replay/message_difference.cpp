@@ -21,23 +21,41 @@ std::string name_of(const std::vector<Named>& all, std::size_t index) {
   return index < all.size() ? fmt::format("'{}'", all[index].name) : fmt::format("{}", index);
 }
 
+// A recording may hold a value that this build does not know.
+template <class Enumeration>
+std::string word_or_number(Enumeration value) {
+  const std::string_view word = name(value);
+  return word.empty() ? fmt::format("{}", static_cast<int>(value)) : std::string(word);
+}
+
 // 17 digits identify a double.
 std::string text(const Scene&, Meaning, double value) { return fmt::format("{:.17g}", value); }
 std::string text(const Scene&, Meaning, bool value) { return value ? "true" : "false"; }
-// A recording may have a value of an enumeration that this build does not know.
 std::string text(const Scene& scene, Meaning meaning, std::uint64_t value) {
+  const auto small = static_cast<std::uint32_t>(value);
   switch (meaning) {
     case Meaning::kPair:
-      return pair_name(scene, static_cast<std::uint32_t>(value));
+      return pair_name(scene, small);
     case Meaning::kObject:
       return name_of(scene.objects, value);
     case Meaning::kZone:
       return name_of(scene.zones, value);
+    case Meaning::kPairStatus:
+      return word_or_number(static_cast<PairStatus>(value));
+    case Meaning::kZoneCause:
+      return word_or_number(static_cast<ZoneCause>(value));
+    case Meaning::kValidity:
+      return word_or_number(static_cast<SeparationValidity>(value));
     case Meaning::kContact:
       return name_of(scene.contacts, value);
+    case Meaning::kContactStatus:
+      return word_or_number(static_cast<ContactStatus>(value));
+    case Meaning::kContactEnded:
+      return word_or_number(static_cast<ContactEnded>(value));
+    case Meaning::kGradientStatus:
+      return word_or_number(static_cast<GradientStatus>(value));
     default:
-      const std::string_view known = word(meaning, value);
-      return known.empty() ? fmt::format("{}", value) : std::string(known);
+      return fmt::format("{}", value);
   }
 }
 std::string text(const Scene&, Meaning, std::int64_t value) { return fmt::format("{}", value); }

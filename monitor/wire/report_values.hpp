@@ -21,9 +21,7 @@ class ValuesOfADaemon {
       if (field.meaning == Meaning::kBound && std::isnan(value)) are_sound_ = false;
       if (field.meaning == Meaning::kShare && !is_share) are_sound_ = false;
     } else if constexpr (std::is_integral_v<Value>) {
-      if (is_enumeration(field.meaning) &&
-          *word(field.meaning, static_cast<std::uint64_t>(value)) == '\0')
-        are_sound_ = false;
+      if (static_cast<std::uint64_t>(value) > last_value(field.meaning)) are_sound_ = false;
     } else if constexpr (MessageSequence<Value>) {
       using Element = std::remove_reference_t<decltype(*value._buffer)>;
       if constexpr (HasFields<Element>) {
