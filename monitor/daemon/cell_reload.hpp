@@ -52,7 +52,7 @@ class CellReload {
   FileWatch watch_;
   bool is_due_ = false;  // it could not be read yet
   Mutex mutex_;
-  // Of the cell that was read again.
+  // The files of the cell that was read again.
   GUARDED_BY(mutex_) std::optional<std::vector<std::filesystem::path>> read_files_;
 };
 

@@ -85,9 +85,9 @@ class MoveItPort {
   Mutex mutex_;
   GUARDED_BY(mutex_) Put put_;  // empty: closed
   GUARDED_BY(mutex_) SceneTurns turns_;
-  GUARDED_BY(mutex_) Heard heard_;  // from another leader, the last one
-  // When last looked at; a command to keep files waits.
-  GUARDED_BY(mutex_) bool leads_ = false, keeps_ = false;
+  GUARDED_BY(mutex_) Heard heard_;         // from another leader, the last one
+  GUARDED_BY(mutex_) bool leads_ = false;  // when last looked at
+  GUARDED_BY(mutex_) bool keeps_ = false;  // a command to keep files waits
   // For the scene thread.
   moveit::SceneKeeper keeper_;
   // The changes that led to the scene in force, by whichever daemon led; then those to come.

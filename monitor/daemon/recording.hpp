@@ -122,7 +122,7 @@ class Recording {
   mutable Mutex mutex_;
   // The first one is being recorded, and the loop writes to the last one.
   GUARDED_BY(mutex_) std::deque<std::unique_ptr<Part>> parts_;
-  // By queues that are gone.
+  // Counts of queues that are gone.
   GUARDED_BY(mutex_) std::uint64_t reports_dropped_before_ = 0, inputs_dropped_before_ = 0;
   std::unique_ptr<Part> prepared_;
   std::atomic<bool> command_came_{false};

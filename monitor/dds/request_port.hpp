@@ -96,7 +96,7 @@ class RequestPort {
   LapsedWriters lapsed_;
   dds_entity_t reader_;
   Mutex mutex_;
-  GUARDED_BY(mutex_) dds_entity_t results_;  // which also come from other threads
+  GUARDED_BY(mutex_) dds_entity_t results_;  // other threads write to it, too
   std::uint64_t address_;                    // of the results
   DataWait wait_;
   std::vector<CdrSample> taken_;

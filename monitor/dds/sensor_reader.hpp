@@ -114,7 +114,7 @@ class SensorReader {
   std::string where_;
   GUARDED_BY(mutex_) std::vector<bool> silence_said_;    // by sensor
   GUARDED_BY(mutex_) std::vector<bool> is_shell_thick_;  // by sensor, as it was said
-  // By sensor and robot, or SensorStatus::payloads, likewise.
+  // By sensor and robot, or SensorStatus::payloads, as it was said.
   GUARDED_BY(mutex_) std::vector<std::vector<bool>> is_denied_, carries_;
   // The last frame of a sensor, whose cloud stays as it is while mutex_ is held; and its copy.
   struct Last {

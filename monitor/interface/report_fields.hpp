@@ -20,7 +20,7 @@ namespace clearance {
 // The meaning of the number in a field.
 enum class Meaning : std::uint8_t {
   kFigure,      // a plain value: a count, a length, a time, a flag
-  kBound,       // a figure that is never NaN: one that is not known is infinite
+  kBound,       // a figure that is never NaN: one that is not known is at the end of its range
   kShare,       // a figure from 0 to 1: one that is not known is 0
   kCycle,       // a tick number, which a replay may count from another start; 0: never
   kPair,        // index into Scene::pairs

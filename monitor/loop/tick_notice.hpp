@@ -7,6 +7,7 @@
 #include <span>
 
 #include "config/scene/sensor.hpp"
+#include "monitor/inputs/elapsed.hpp"
 #include "monitor/inputs/pose_batch.hpp"
 #include "monitor/inputs/tick_time.hpp"
 
@@ -68,6 +69,13 @@ struct TickNotice {
   std::array<TickFrame, kMaxSensors> frames;
   std::size_t frame_count = 0;
 
+  // Sums of the stated times and of this machine's do not overflow. `now_ns`: of its clocks.
+  [[nodiscard]] bool has_possible_times(std::int64_t now_ns) const noexcept {
+    const auto is_near = [](std::int64_t ns) { return ns >= -kForgottenNs && ns <= kForgottenNs; };
+    return is_near(less(time.now_ns, now_ns)) && is_near(time.clock_offset_ns) &&
+           is_near(told_late_ns) && is_near(due_ns) &&
+           time.report_delay_ns >= TickTime::kNotMeasured;
+  }
   [[nodiscard]] std::span<const TickInput> used() const noexcept {
     return std::span(inputs).first(count);
   }

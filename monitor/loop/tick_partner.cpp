@@ -99,14 +99,11 @@ void TickPartner::listen() noexcept {
 
 // Notices may be forged. A tick is due in two periods at most, and at most two before the last one.
 // Its told time leaps by at most kLargestStepNs. The first notice after a join may state any of the
-// last two. Sums of stated times do not overflow.
+// last two.
 bool TickPartner::is_possible(const TickNotice& notice) noexcept {
   const std::int64_t slack = 2 * options_.period_ns;
-  const TickTime& told = notice.time;
   bool is = less(notice.due_ns, clock_.monotonic_ns()) <= slack &&
-            less(clock_.monotonic_ns(), notice.due_ns) <= kForgottenNs &&
-            told.clock_offset_ns == std::clamp(told.clock_offset_ns, -kForgottenNs, kForgottenNs) &&
-            told.report_delay_ns >= TickTime::kNotMeasured;
+            notice.has_possible_times(steady_.read(clock_).now_ns);
   if (standing_ == PartnerStanding::kFollowing && notice.cycle >= cycle_) {
     const std::int64_t step = less(ahead_of_own(notice), ahead_of_own_ns_);
     is = is && (has_joined_ || (less(deadline_, notice.due_ns) <= slack &&

@@ -247,10 +247,11 @@ std::string how_to_reach(const DdsOptions& options, std::uint32_t domain) {
       "other programs reach it with CYCLONEDDS_URI='<CycloneDDS><Domain>{}{}</Domain></CycloneDDS>'"
       ", {}{}",
       element("General", general_xml(network)), element("Discovery", discovery_xml(network)), on,
-      is_on_lo ? "; nodes of Humble with ROS_LOCALHOST_ONLY=1 reach it without this, and on "
-                 "rmw_cyclonedds terminate with it; other nodes on rmw_fastrtps do not: start it "
-                 "with --interface ros"
-               : "");
+      is_on_lo
+          ? "; nodes of Humble with ROS_LOCALHOST_ONLY=1 reach it without this, and on "
+            "rmw_cyclonedds terminate with it. No other node on rmw_fastrtps reaches it: start "
+            "clearanced with --interface ros"
+          : "");
 }
 
 }  // namespace clearance

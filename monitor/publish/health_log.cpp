@@ -69,6 +69,7 @@ void HealthLog::log_late(const clearance_msg_InputAge& input, const Poses& now) 
 void HealthLog::change(const Scene& scene) {
   refusals_.begin_counts_anew();
   joints_.change(scene);
+  samples_ = 0;
   std::set<std::string> inputs;
   for (const Object& object : scene.objects) inputs.insert(object.name);
   for (const JointVariable& variable : scene.variables) inputs.insert("joint " + variable.name);

@@ -22,7 +22,8 @@ class HealthLog {
   // the same name.
   void change(const Scene& scene);
   // Called with every sample, in order. `senders_of_joints` names the senders of joint states when
-  // that is needed. `missing_moveit` says that MoveIt's scene has no sender; empty: it has one.
+  // that is needed. `missing_moveit` says that MoveIt's scene has no sender; empty: it has
+  // one, or the cell names none.
   void update(const clearance_msg_Health& health,
               const std::function<std::string()>& senders_of_joints,
               const std::function<std::string()>& missing_moveit);

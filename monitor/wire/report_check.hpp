@@ -20,7 +20,7 @@ enum class ReportError : std::uint8_t {
   kClocksDisagree = 4,  // it was published later than now
   kOtherSource = 5,     // it is not of the daemon of the one before, or of its partner
   kRepeated = 6,        // its cycle is not above that of the one before
-  // The CRC is not the one that it states, or it states none, or a value is none of a daemon.
+  // The CRC is not the one that it states, or it states none, or it has a value of no daemon.
   kCorrupt = 7,
   kOtherAddress = 8,  // it was written for another domain, partition or topic
   kShare = 9,         // a share of the cell is not whole
@@ -107,7 +107,7 @@ class ReportChecker {
       const std::int64_t later = less(report.now_ns, now_ns_);
       const bool goes_on = report.cycle == cycle_ + 1 && later < 2 * period;
       if (report.lineage != lineage_ && period > 0 && !goes_on) {
-        const std::int64_t steps = (later + period / 2) / period;
+        const std::int64_t steps = less(later, -(period / 2)) / period;
         return steps > 1 ? static_cast<std::uint64_t>(steps - 1) : 0;
       }
     }

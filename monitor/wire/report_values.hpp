@@ -1,5 +1,6 @@
-// Whether the values of a message of a tick are ones that a daemon writes. A CRC says that they are
-// as they were sent, and not by whom.
+// Whether a message of a tick has a value that no daemon writes: a bound that is NaN, a lower bound
+// above the upper one, a share beyond 0 and 1, a status that is none. A CRC says that values are as
+// they were sent, and not by whom.
 #pragma once
 
 #include <cmath>
@@ -10,10 +11,16 @@
 
 namespace clearance {
 
-// A visitor of fields: no bound is NaN, no share is beyond 0 and 1, no enumeration has other
-// values.
+// Visits the fields of a message.
 class ValuesOfADaemon {
  public:
+  template <HasFields Value>
+  void check(const Value& value) noexcept {
+    if constexpr (requires { value.upper; }) {
+      if (!(value.lower <= value.upper)) are_sound_ = false;
+    }
+    for_each_field(*this, value);
+  }
   template <class Value>
   void operator()(const Field& field, const Value& value) noexcept {
     if constexpr (std::is_floating_point_v<Value>) {
@@ -25,10 +32,10 @@ class ValuesOfADaemon {
     } else if constexpr (MessageSequence<Value>) {
       using Element = std::remove_reference_t<decltype(*value._buffer)>;
       if constexpr (HasFields<Element>) {
-        for (std::uint32_t i = 0; i < value._length; ++i) for_each_field(*this, value._buffer[i]);
+        for (std::uint32_t i = 0; i < value._length; ++i) check(value._buffer[i]);
       }
     } else if constexpr (HasFields<Value>) {
-      for_each_field(*this, value);
+      check(value);
     }
   }
   [[nodiscard]] bool are_sound() const noexcept { return are_sound_; }
@@ -40,7 +47,7 @@ class ValuesOfADaemon {
 template <class Message>
 [[nodiscard]] bool has_values_of_a_daemon(const Message& message) noexcept {
   ValuesOfADaemon found;
-  for_each_field(found, message);
+  found.check(message);
   return found.are_sound();
 }
 

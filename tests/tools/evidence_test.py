@@ -121,6 +121,7 @@ class Evidence(unittest.TestCase):
 |---|---|---|---|
 | `[poses-late]` | poses are late | the source stopped | start it again |
 | | the same | a rare transform | publish it |
+| `[poses-even]` | poses are even | no source | - |
 ## Refused
 | CAUSE | meaning | published meanwhile | what to do |
 |---|---|---|---|
@@ -129,6 +130,7 @@ class Evidence(unittest.TestCase):
 | of rows in | published meanwhile | seen by | what to do |
 |---|---|---|---|
 | [late](#late) | wider bounds | health | wait |
+| `[poses-odd]`, `[poses-even]` | narrow bounds | the log | - |
 ## Tests
 | section | rows | tests |
 |---|---|---|
@@ -136,11 +138,11 @@ class Evidence(unittest.TestCase):
 """
         time = {"kind": "Silence", "test": "Lies.Are/Silence", "p50_ticks": 21, "max_ticks": 23, "runs": 5}
         found, lost = fmea.joined(page, {"poses-late": [time], "no pose": [time], "pose": [time]})
-        self.assertEqual([len(row["times"]) for row in found], [0, 1, 0, 1])
-        self.assertEqual([row["detection"] for row in found], ["see `[poses-late]`"] + ["`[poses-late]`"] * 2 + ["not finite; no pose"])
-        self.assertEqual((found[3]["cause"], found[3]["effect"]), ("nonsense | damage", "unknown"))
-        self.assertEqual([row["effect"] for row in found], ["nothing", "wider bounds", "wider bounds", "unknown"])
-        self.assertEqual([row["test"] for row in found], ["`Stops.Late`"] + ["`Poses.*`"] * 3)
+        self.assertEqual([len(row["times"]) for row in found], [0, 1, 0, 0, 1])
+        self.assertEqual([row["detection"] for row in found], ["see `[poses-late]`"] + ["`[poses-late]`"] * 2 + ["`[poses-even]`", "not finite; no pose"])
+        self.assertEqual((found[4]["cause"], found[4]["effect"]), ("nonsense | damage", "unknown"))
+        self.assertEqual([row["effect"] for row in found], ["nothing", "wider bounds", "wider bounds", "narrow bounds", "unknown"])
+        self.assertEqual([row["test"] for row in found], ["`Stops.Late`"] + ["`Poses.*`"] * 4)
         self.assertEqual(lost, ["monitor/FAULTS.md has no row for 'pose', which Lies.Are/Silence has told"])
         case = {"name": "Are/Silence", "time until detected: poses-late": "21 23 5", "file": "x"}
         self.assertEqual(list(fmea.times_of(case, "Lies")), [("poses-late", time)])

@@ -185,12 +185,13 @@ TEST_F(RosDiscoveryNetwork, NodesOnFastDdsAreMetOnEveryInterfaceButLo) {
   }
 }
 
-TEST_F(RosDiscoveryNetwork, ADaemonOnLoMeetsNodesOnFastDdsThatAreOnLoOnly) {
+TEST_F(RosDiscoveryNetwork, ADaemonOnLoMeetsANodeOfHumbleOnFastDds) {
   if (!std::filesystem::exists(kFastDds)) GTEST_SKIP() << "Fast DDS is not installed";
   start({});
   EXPECT_TRUE(meets_fast_dds(here, "humble")) << daemon->output();
-  EXPECT_TRUE(daemon->told("how-to-reach", {"other nodes on rmw_fastrtps do not: start it with "
-                                            "--interface ros"}))
+  EXPECT_TRUE(daemon->told(
+      "how-to-reach",
+      {"No other node on rmw_fastrtps reaches it: start clearanced with --interface ros"}))
       << daemon->output();
 }
 

@@ -105,7 +105,7 @@ class Tutorial(unittest.TestCase):
 
 ROS_PAGES = ("../idl/ROS.md", "../idl/SIMULATED_TIME.md", "ros2/README.md")
 ARM = ROOT / "config/cells/seven_joint_arm/arm"
-# What the parts of cells are parts of, by key.
+# Keys that make a cell of the parts on the pages.
 CELL = {
     "name": "page",
     "units": "{length: m, angle: rad}",

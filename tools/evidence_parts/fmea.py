@@ -43,9 +43,9 @@ def anchor(section):
 def rows(page):
     """All rows that name a cause and what to do, or what happens. An empty first cell repeats the one above.
 
-    Where a row says nothing of its effect, detection or reaction, the line of its section does.
+    Where a row says nothing of its effect, detection or reaction, the line of its code or of its section does.
     """
-    tested, of_section, found = {}, {}, []
+    tested, defaults, found = {}, {}, []
     for section, columns, listed in tables(page):
         if columns == ["section", "rows", "tests"]:
             for sections, _, tests in listed:
@@ -53,9 +53,9 @@ def rows(page):
                     tested.setdefault(name, []).append(without_links(tests))
             continue
         if columns[0] == "of rows in":
-            for section_link, effect, detection, reaction in listed:
-                name = re.search(r"\(#([^)]+)\)", section_link)[1]
-                of_section[name] = {"effect": effect, "detection": detection, "reaction": without_links(reaction)}
+            for codes_or_section, effect, detection, reaction in listed:
+                for name in re.findall(r"\(#([^)]+)\)|(`\[[a-z-]+\]`)", codes_or_section):
+                    defaults["".join(name)] = {"effect": effect, "detection": detection, "reaction": without_links(reaction)}
             continue
         places = {kind: next((columns.index(name) for name in names if name in columns), None)
                   for kind, names in COLUMNS.items()}
@@ -70,8 +70,10 @@ def rows(page):
             found.append({"section": section, **entry})
     for entry in found:
         entry["test"] = entry["test"] or "; ".join(tested.get(anchor(entry["section"]), []))
-        for kind, text in of_section.get(anchor(entry["section"]), {}).items():
-            entry[kind] = entry[kind] or text
+        of_code = [code for code in re.findall(r"`\[[a-z-]+\]`", entry["detection"]) if code in defaults]
+        for name in [*of_code, anchor(entry["section"])]:
+            for kind, text in defaults.get(name, {}).items():
+                entry[kind] = entry[kind] or text
     return found
 
 

@@ -49,7 +49,7 @@ class MqttPublisher {
   std::int64_t repeat_ns_ = 0;  // when everything is sent again
   std::atomic<bool> is_connected_ = false, is_new_ = false;
   Mutex mutex_;
-  // Why the broker is away, as logged last; empty: it is not. Both threads write it.
+  // The reason why the broker is away, as logged last; empty: it is not. Both threads write it.
   GUARDED_BY(mutex_) std::optional<std::string> told_;
   std::jthread thread_;  // of run(); it uses all of the above
 };

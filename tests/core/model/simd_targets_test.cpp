@@ -178,8 +178,8 @@ std::uint64_t fingerprint_of_walks(bool on_lattice) {
   return all.value();
 }
 
-// Bodies that overlap, here and 1 km away, each query without what the one before has found. And
-// what encloses them, and encloses that again.
+// Bodies overlap, at the origin and 1.4 km from it, and each query begins anew. A polyhedron
+// encloses them, and another one encloses that.
 std::uint64_t fingerprint_of_overlaps() {
   constexpr int kShapes = 11, kPlaces = 16;
   Drawn drawn(401, false);

@@ -13,9 +13,9 @@
 namespace clearance::test {
 namespace {
 
-// Scenes with a cup and a bowl, in this order or in the other.
 const std::function<std::string()> kNothing = [] { return std::string(); };
 
+// Scenes with a cup and a bowl, in this order or in the other.
 class HealthLogTest : public testing::Test {
  protected:
   static Scene scene_of_names(const std::vector<std::string>& names) {
