@@ -88,14 +88,9 @@ void fill_rest(clearance_msg_Separation& message) {
   reserve_sequence(message.stops, 1);
   message.stops._length = 1;
 }
-void fill_rest(clearance_msg_Gradients& message) {
-  reserve_sequence(message.pairs, 1);
-  reserve_sequence(message.alternatives, 1);
-  message.pairs._length = message.alternatives._length = 1;
-}
+void fill_rest(clearance_msg_Gradients&) {}
 void fill_rest(clearance_msg_ZoneState&) {}
 void fill_rest(clearance_msg_Health&) {}
-void fill(std::mt19937_64&, Sample<clearance_msg_Gradients>&) {}
 
 // A message of random values, as a daemon might write it.
 template <class Message>

@@ -161,6 +161,23 @@ inline void fill(std::mt19937_64& random, Sample<clearance_msg_Separation>& sepa
   }
 }
 
+inline void fill(std::mt19937_64& random, Sample<clearance_msg_Gradients>& gradients) {
+  gradients->daemon = random();
+  gradients->cycle = random();
+  reserve_sequence(gradients->pairs, 1 + random() % 6);
+  reserve_sequence(gradients->alternatives, gradients->pairs._maximum);
+  for (std::uint32_t i = 0; i < gradients->pairs._maximum; ++i) {
+    clearance_msg_PairGradient& pair = gradients->pairs._buffer[gradients->pairs._length++];
+    pair.pair = i;
+    pair.status = static_cast<std::uint8_t>(random() % 8);
+    pair.distance = any_double(random);
+    pair.lower = any_double(random);
+    pair.drift = any_double(random);
+    gradients->alternatives._buffer[gradients->alternatives._length++] = {
+        static_cast<std::uint8_t>(random() % 4), any_double(random), any_double(random)};
+  }
+}
+
 inline void fill(std::mt19937_64& random, Sample<clearance_msg_Health>& health) {
   health->daemon = random();
   health->cycle = random();
