@@ -103,6 +103,7 @@ void fill_soundly(std::mt19937_64& random, Message& message) {
           if (is_bound(field.name) && std::isnan(value)) value = -1.0 / 0.0;
           if (is_share(field.name)) value = std::isfinite(value) ? std::abs(value) / 10.0 : 0.0;
           if (field.name == "upper") value = 11.0;
+          if (field.name == "lower") value = -11.0;
         }
       },
       *message);
