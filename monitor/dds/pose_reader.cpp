@@ -17,7 +17,6 @@
 #include "monitor/loop/batch_store.hpp"
 #include "monitor/loop/realtime.hpp"
 #include "monitor/loop/scene_capacity.hpp"
-#include "monitor/wire/moveit_types.hpp"
 
 namespace clearance {
 namespace {
@@ -46,11 +45,6 @@ void log_matched(dds_entity_t reader, const dds_subscription_matched_status_t st
   static_cast<std::atomic<bool>*>(changed)->store(true);
   log_line(status.current_count_change > 0 ? lines::kWriterAppeared : lines::kWriterLeft,
            topic_of(reader), status.current_count);
-}
-
-bool is_of_moveit(const RosType* type) {
-  return type == &kRosCollisionObject || type == &kRosAttachedCollisionObject ||
-         type == &kRosPlanningScene;
 }
 
 }  // namespace
@@ -190,20 +184,6 @@ std::string PoseReader::senders_of_joints() const {
                      topics_->joint_states, ros_.present().instead_on(where_));
 }
 
-std::string PoseReader::missing_moveit() const {
-  const Lock lock(mutex_);
-  std::vector<std::string> topics;
-  for (const NamedTopic& named : intake_.named()) {
-    if (!is_of_moveit(named.delivery)) continue;
-    topics.push_back(ros_dds_name(named.name));
-    for (const auto& [handle, writer] : ros_.present().writers())
-      if (writer.topic == topics.back()) return "";
-  }
-  if (topics.empty()) return "";
-  return fmt::format("there is no publisher of {} {}", fmt::join(topics, " or "),
-                     ros_.present().instead_on(where_));
-}
-
 // Waits for data, for the time at which the intake wants to settle, or for the destructor.
 void PoseReader::run() {
   name_thread("poses");
@@ -271,8 +251,9 @@ bool PoseReader::hand_over(PoseBatch& batch) noexcept {
 
 void PoseReader::log_news() {
   for (const News& news : intake_.take_news()) {
-    const std::string instead =
-        news.code == lines::kNoTransforms.code ? " " + ros_.present().instead_on(where_) : "";
+    const bool is_missing =
+        news.code == lines::kNoTransforms.code || news.code == lines::kMoveItSilent.code;
+    const std::string instead = is_missing ? " " + ros_.present().instead_on(where_) : "";
     log_text(news.level, news.text + instead, news.code);
   }
 }

@@ -90,9 +90,6 @@ class PoseReader final : public PoseSource {
   // A sentence for a person who hears nothing of a robot. It names the senders of joint states. If
   // there are none, it names the topics that exist instead.
   [[nodiscard]] std::string senders_of_joints() const;
-  // The same for MoveIt's scene, if the cell names topics of it and none of them has a publisher;
-  // else empty.
-  [[nodiscard]] std::string missing_moveit() const;
 
  private:
   // One of our own topics.

@@ -39,7 +39,7 @@ Intake::Intake(const Cell& cell, IntakeOptions options, Use use)
   const StatedStops* const stops = add<StatedStops>(cell.scene, *this);
   joint_states_ = add<RosJointStates>(cell.scene, joint_states, *stops, *this);
   transforms_ = add<RosTransforms>(cell, from, *this, options_.use_sensor);
-  add<MoveItMessages>(cell, options_.use_scene, *this);
+  add<MoveItMessages>(cell, options_.use_scene, options_.is_log, *this);
   add<TrackedBodies>(cell, options_.use_scene, *this);
   add<SensorMessages>(cell, options_.use_sensor, *this);
 }

@@ -30,6 +30,12 @@ constexpr std::array<Input, 3> kInputs = {{
 
 }  // namespace
 
+MoveItMessages::MoveItMessages(const Cell& cell, Use use, bool is_log, Outlet& out)
+    : inputs_(&cell.ros.moveit),
+      use_(std::move(use)),
+      out_(out),
+      waits_(!is_log && !named().empty()) {}
+
 std::optional<Decoder::Wanted> MoveItMessages::wants(const TopicName& topic) {
   for (std::uint32_t port = 0; port < kInputs.size(); ++port) {
     const Input& input = kInputs[port];
@@ -37,6 +43,7 @@ std::optional<Decoder::Wanted> MoveItMessages::wants(const TopicName& topic) {
     out_.tell(use_ ? News(lines::kTopicHeard, "the scene of MoveIt", topic.name)
                    : News(lines::kTopicNotUsed, topic.name));
     if (!use_) return std::nullopt;
+    waits_ = false;
     return Wanted{port, input.delivery};
   }
   return std::nullopt;
@@ -60,6 +67,21 @@ bool MoveItMessages::decode(std::uint32_t port, const RawMessage& message, const
         message.bytes,
         message.sent_ns});
   return true;
+}
+
+void MoveItMessages::settle(const Now& now) {
+  if (!waits_) return;
+  if (since_ns_ < 0) since_ns_ = now.monotonic_ns;
+  if (now.monotonic_ns - since_ns_ < kMissingNs) return;
+  waits_ = false;
+  std::vector<std::string> topics;
+  for (const NamedTopic& each : named()) topics.push_back(each.name);
+  out_.tell(News(lines::kMoveItSilent,
+                 fmt::format("there is no publisher of {}", fmt::join(topics, " or "))));
+}
+
+std::int64_t MoveItMessages::patience_ns() const {
+  return waits_ ? kMissingNs / 10 : Decoder::patience_ns();
 }
 
 }  // namespace clearance

@@ -13,20 +13,26 @@ class MoveItMessages final : public Decoder {
   // Receives each message of the topics that the cell names.
   using Use = std::function<void(moveit::RawScene message)>;
 
-  // Without `use`, no topic is wanted; then, messages that the cell would use are named once.
-  MoveItMessages(const Cell& cell, Use use, Outlet& out)
-      : inputs_(&cell.ros.moveit), use_(std::move(use)), out_(out) {}
+  // Without `use`, no topic is wanted; then, messages that the cell would use are named once. In a
+  // log, no publisher is missed.
+  MoveItMessages(const Cell& cell, Use use, bool is_log, Outlet& out);
 
   [[nodiscard]] std::optional<Wanted> wants(const TopicName& topic) override;
   [[nodiscard]] std::vector<NamedTopic> named() const override;
   [[nodiscard]] bool decode(std::uint32_t port, const RawMessage& message, const Now& now,
                             TopicCounts& counts) override;
   void change(const Cell& cell) override { inputs_ = &cell.ros.moveit; }
+  void settle(const Now& now) override;
+  [[nodiscard]] std::int64_t patience_ns() const override;
+
+  static constexpr std::int64_t kMissingNs = 5'000'000'000;  // without a publisher, it is told
 
  private:
   const MoveItInputs* inputs_;
   Use use_;
   Outlet& out_;
+  bool waits_;                  // for a publisher of any of the topics
+  std::int64_t since_ns_ = -1;  // CLOCK_MONOTONIC; -1: never settled
 };
 
 }  // namespace clearance

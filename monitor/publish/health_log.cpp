@@ -69,7 +69,6 @@ void HealthLog::log_late(const clearance_msg_InputAge& input, const Poses& now) 
 void HealthLog::change(const Scene& scene) {
   refusals_.begin_counts_anew();
   joints_.change(scene);
-  samples_ = 0;
   std::set<std::string> inputs;
   for (const Object& object : scene.objects) inputs.insert(object.name);
   for (const JointVariable& variable : scene.variables) inputs.insert("joint " + variable.name);
@@ -125,8 +124,7 @@ void HealthLog::log_notes(const clearance_msg_Health& health) {
 // Logs late inputs, then refusals, then the totals. The limit on lines is for a cell that loses all
 // its objects at once.
 void HealthLog::update(const clearance_msg_Health& health,
-                       const std::function<std::string()>& senders_of_joints,
-                       const std::function<std::string()>& missing_moveit) {
+                       const std::function<std::string()>& senders_of_joints) {
   std::size_t logged = 0;
   for (std::uint32_t i = 0; i < health.inputs._length; ++i) {
     const clearance_msg_InputAge& input = health.inputs._buffer[i];
@@ -151,9 +149,6 @@ void HealthLog::update(const clearance_msg_Health& health,
   if (logged > kLinesAtOnce)
     log_line(lines::kMoreLeftOut, counted(logged - kLinesAtOnce, "more line"));
   joints_.update(health.joints, senders_of_joints);
-  if (++samples_ == JointLog::kSilentSamples) {
-    if (const std::string why = missing_moveit(); !why.empty()) log_line(lines::kMoveItSilent, why);
-  }
   log_notes(health);
   log_clock(health);
   log_response(health);

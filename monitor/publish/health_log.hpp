@@ -22,11 +22,9 @@ class HealthLog {
   // the same name.
   void change(const Scene& scene);
   // Called with every sample, in order. `senders_of_joints` names the senders of joint states when
-  // that is needed. `missing_moveit` says that MoveIt's scene has no sender; empty: it has
-  // one, or the cell names none.
+  // that is needed.
   void update(const clearance_msg_Health& health,
-              const std::function<std::string()>& senders_of_joints,
-              const std::function<std::string()>& missing_moveit);
+              const std::function<std::string()>& senders_of_joints);
 
  private:
   void log_clock(const clearance_msg_Health& health);
@@ -50,7 +48,6 @@ class HealthLog {
   };
   std::map<std::string, Note> notes_;
   JointLog joints_;
-  int samples_ = 0;
   std::uint64_t late_responses_ = 0;
   bool response_is_late_ = false;
   std::uint64_t clock_steps_ = 0;

@@ -348,9 +348,7 @@ void ReportWriter::write_health(const LoopStatistics& statistics) {
   }
   zones_.end_second();
   contact_log_.end_second();
-  health_log_.update(
-      *sample, [this] { return poses_.senders_of_joints(); },
-      [this] { return poses_.missing_moveit(); });
+  health_log_.update(*sample, [this] { return poses_.senders_of_joints(); });
 }
 
 template <class Message>

@@ -95,6 +95,15 @@ class House(unittest.TestCase):
             self.expect("function-length", "core/a.cpp", head, begin + body * (80 - lines) + closing)
         self.expect("function-length", "tools/script", 2, "#!/usr/bin/env python3\ndef f():\n" + "    x = 1\n" * 80)
 
+    def test_each_lock_of_the_product_states_what_it_guards(self):
+        for text in ("std::mutex mutex_;\n", "mutable std::shared_mutex m;\n", "const std::lock_guard lock(m);\n"):
+            for path in ("core/a.hpp", "monitor/a.cpp", "tools/a/b.hpp"):
+                self.expect("lock", path, 1, text)
+            for path in ("tests/a_test.cpp", "tools/ros2/a.cpp", "monitor/interface/mutex.hpp"):
+                self.write(path, text)
+                self.assertEqual(self.found(), [], path)
+                (self.root / path).unlink()
+
     def test_braces_that_do_not_close_are_told(self):
         for text in ("void f() {\n", "}\n", "#if A\nvoid f() {\n#else\nvoid g() {\n#endif\n}\n"):
             self.expect("function-length", "core/a.cpp", 1, text)

@@ -1,4 +1,4 @@
-"""Rules about sources: lengths, the words of comments and names, and how a comment begins."""
+"""Rules about sources: lengths, the words of comments and names, how a comment begins, and locks that state what they guard."""
 import re
 
 import sources
@@ -9,6 +9,9 @@ MOST_LINES, MOST_FUNCTION_LINES = 400, 80
 # the rest has a verb cannot be decided by a list, so it is not.
 NO_BEGINNING = set("""also and again because but else hence it its like nor not or otherwise so than that their them
 then therefore they those thus too which who whom whose yet""".split())
+# Locks that clang cannot check. What builds alone against ROS 2 has no headers of the product.
+_BARE_LOCK = re.compile(r"\bstd::(\w*mutex|lock_guard|unique_lock|scoped_lock|shared_lock)\b")
+_OF_LOCKS, _WITHOUT_LOCKS = ("core/", "config/", "monitor/", "tools/"), ("monitor/interface/mutex.hpp", "tools/ros2/")
 _PARTS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")
 
 
@@ -56,6 +59,8 @@ def check(tree):
         source = sources.CppSource(tree.text(path))
         yield from lengths(path, tree.text(path), source.functions())
         yield from comments(path, source.comments, words)
+        if path.startswith(_OF_LOCKS) and not path.startswith(_WITHOUT_LOCKS):
+            yield from locks(path, tree.text(path))
         for name, line in source.names().items():
             if instead := words.in_name(name):
                 yield Fault("word", path, line, f"found the name '{name}'; write {instead}")
@@ -80,6 +85,12 @@ def lengths(path, text, functions):
         if function.lines > MOST_FUNCTION_LINES:
             yield Fault("function-length", path, function.line,
                         f"{function.name} has {function.lines} lines; {MOST_FUNCTION_LINES} at most")
+
+
+def locks(path, text):
+    for number, line in enumerate(text.splitlines(), 1):
+        if found := _BARE_LOCK.search(line):
+            yield Fault("lock", path, number, f"found '{found[0]}'; write Mutex or Lock (monitor/interface/mutex.hpp)")
 
 
 def comments(path, blocks, words):

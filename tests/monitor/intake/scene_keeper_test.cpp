@@ -131,6 +131,33 @@ TEST_F(KeptScene, IntakeHandsOnTheTopicsThatTheCellNames) {
   EXPECT_TRUE(log.news[0].level == LogLevel::kWarn);
 }
 
+TEST_F(KeptScene, WithoutAPublisherIsMissedOnceAndOnlyByADaemon) {
+  const auto ignore = [](const RawScene&) {};
+  const test::RosMessage sent{"/collision_object", "moveit_msgs/msg/CollisionObject", 0,
+                              cdr_of(some_object("shelf"))};
+  const auto times_told = [&](IntakeOptions options, bool has_publisher) {
+    test::Heard heard(cell_, std::move(options));
+    if (has_publisher) {
+      EXPECT_TRUE(heard.take(sent));
+    }
+    heard.settle();
+    heard.pass(MoveItMessages::kMissingNs - 1);
+    heard.settle();
+    EXPECT_EQ(heard.told(lines::kMoveItSilent.code), 0u);
+    for (int i = 0; i < 3; ++i) {
+      heard.pass(MoveItMessages::kMissingNs);
+      heard.settle();
+    }
+    return heard.told(lines::kMoveItSilent.code);
+  };
+  EXPECT_EQ(times_told({.use_scene = ignore}, false), 1u);
+  EXPECT_LT(test::Heard(cell_, {.use_scene = ignore}).intake.patience_ns(),
+            MoveItMessages::kMissingNs);
+  EXPECT_EQ(times_told({.use_scene = ignore}, true), 0u);
+  EXPECT_EQ(times_told({.is_log = true, .use_scene = ignore}, false), 0u);
+  EXPECT_EQ(times_told({}, false), 0u) << "the scene has no user";
+}
+
 // The other keeper has not heard the scene. Frames, subframes, margins and the matrix are in no
 // cell.
 TEST_F(KeptScene, ASecondKeeperGoesOnWithWhatTheFirstOneKept) {

@@ -13,8 +13,6 @@
 namespace clearance::test {
 namespace {
 
-const std::function<std::string()> kNothing = [] { return std::string(); };
-
 // Scenes with a cup and a bowl, in this order or in the other.
 class HealthLogTest : public testing::Test {
  protected:
@@ -42,14 +40,14 @@ class HealthLogTest : public testing::Test {
     health.overruns = overruns;
     health.inputs._buffer = inputs.data();
     health.inputs._length = static_cast<std::uint32_t>(inputs.size());
-    log_.update(health, kNothing, kNothing);
+    log_.update(health, [] { return std::string(); });
   }
   void response(std::uint64_t late_responses, clearance_msg_InputResponse* slowest = nullptr) {
     clearance_msg_Health health{};
     health.late_responses = late_responses;
     health.responses._buffer = slowest;
     health.responses._length = slowest == nullptr ? 0 : 1;
-    log_.update(health, kNothing, kNothing);
+    log_.update(health, [] { return std::string(); });
   }
   [[nodiscard]] std::size_t lines(const std::string& code) const {
     return logged_->count("[" + code + "]");
