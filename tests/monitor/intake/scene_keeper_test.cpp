@@ -6,12 +6,16 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <string>
 #include <vector>
 
 #include "tests/monitor/intake/heard.hpp"
 #include "tests/monitor/intake/moveit_cell.hpp"
 #include "tests/monitor/intake/moveit_messages.hpp"
+#include "tests/shared/forged_bytes.hpp"
+#include "tests/shared/random.hpp"
+#include "tests/shared/repeats.hpp"
 
 namespace clearance::moveit {
 namespace {
@@ -191,6 +195,66 @@ TEST_F(KeptScene, BytesOfSomethingElseChangeNothing) {
   }
   keeper_.save(after);
   EXPECT_EQ(after, bytes);
+}
+
+// A stranger in the partition forges what a partner has kept.
+TEST_F(KeptScene, ForgedBytesAreRefusedOrLeadToNothingThatACellFileCouldNotSay) {
+  static_cast<void>(take(RawScene::Type::kPlanningScene, cdr_of(some_scene())));
+  std::vector<std::byte> genuine;
+  keeper_.save(genuine);
+  PlanningScene next;
+  next.is_diff = next.robot_state_is_diff = true;
+  next.collision_objects = {sphere_object("ball", "bench", {1, 0, 0}),
+                            sphere_object("knob", "held/top", {0, 0, 0})};
+  next.link_padding = {{"hand", 0.0}};
+  const RawScene raw{RawScene::Type::kPlanningScene, "/topic", cdr_of(next)};
+  const auto poses = [this](const std::string& body) { return std::optional(poses_.at(body)); };
+  Random random(64);
+  std::uint64_t refused = 0, restored = 0;
+  const std::uint64_t forgeries = repeats(20'000, 32);
+  for (std::uint64_t forgery = 0; forgery < forgeries; ++forgery) {
+    SceneKeeper keeper;
+    if (!keeper.restore(test::forged(genuine, random))) {
+      ++refused;
+      continue;
+    }
+    ++restored;
+    std::vector<std::byte> kept, again;
+    keeper.save(kept);
+    ASSERT_TRUE(keeper.restore(kept)) << forgery;
+    keeper.save(again);
+    ASSERT_EQ(again, kept) << forgery;
+    SceneKeeper::Work work = keeper.take(raw, cell_, poses);
+    auto result = editor_->propose(work.changes,
+                                   [&](const Scene& changed) { return keeper.complete(changed); });
+    const auto* cell = std::get_if<Cell>(&result);
+    if (cell == nullptr) continue;
+    editor_->take_back();
+    for (const Object& object : cell->scene.objects) {
+      ASSERT_TRUE(object.world_from_object.position.allFinite()) << forgery << " " << object.name;
+      ASSERT_TRUE(object.margin >= 0.0) << forgery << " " << object.name;
+    }
+  }
+  EXPECT_GT(refused, forgeries / 10);
+  EXPECT_GT(restored, forgeries / 10);
+}
+
+TEST_F(KeptScene, APoseThatIsNoneIsNotGoneOnWith) {
+  static_cast<void>(take(RawScene::Type::kPlanningScene, cdr_of(some_scene())));
+  std::vector<std::byte> bytes;
+  keeper_.save(bytes);
+  // The height of the frame 'bench', that of the subframe 'top', and no rotation.
+  for (const auto& [value, least] : {std::pair(6.0, 1), std::pair(0.25, 1), std::pair(1.0, 2)}) {
+    int places = 0;
+    for (std::size_t at = 0; at + 8 <= bytes.size(); ++at) {
+      if (std::memcmp(bytes.data() + at, &value, 8) != 0) continue;
+      std::vector<std::byte> forged = bytes;
+      std::memcpy(forged.data() + at, &test::kHostile[0], 8);
+      EXPECT_FALSE(SceneKeeper().restore(forged)) << value << " at byte " << at;
+      ++places;
+    }
+    EXPECT_GE(places, least) << value;
+  }
 }
 
 TEST_F(KeptScene, TheFilesOfAMessageAreThoseThatItsChangesName) {

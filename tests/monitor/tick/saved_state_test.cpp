@@ -15,6 +15,7 @@
 #include "tests/monitor/tick/scara_cell.hpp"
 #include "tests/monitor/tick/small_cells.hpp"
 #include "tests/monitor/tick/taken_over.hpp"
+#include "tests/shared/forged_bytes.hpp"
 #include "tests/shared/random.hpp"
 #include "tests/shared/repeats.hpp"
 
@@ -156,19 +157,6 @@ class ForgedState : public SavedState {
     }
   }
 
-  // A NaN, all bits, -1, infinities, 1e300, the last integers, -0, and few.
-  static constexpr std::uint64_t kHostile[] = {0x7ff8'0000'0000'0000,
-                                               ~std::uint64_t{0},
-                                               0xbff0'0000'0000'0000,
-                                               0x7ff0'0000'0000'0000,
-                                               0xfff0'0000'0000'0000,
-                                               0x7e37'e43c'8800'759c,
-                                               0x7fff'ffff'ffff'ffff,
-                                               0x7fff'ffff,
-                                               0x8000'0000'0000'0000,
-                                               0,
-                                               1,
-                                               2};
   std::vector<std::byte> genuine;
   int until = 0;
   std::uint64_t refused = 0, joined_states = 0;
@@ -177,7 +165,8 @@ class ForgedState : public SavedState {
 TEST_F(ForgedState, WithAnyOneFieldHostileIsRefusedOrHarmless) {
   for (const std::size_t width : {1, 4, 8}) {
     for (std::size_t at = 0; at + width <= genuine.size(); at += width) {
-      for (const std::uint64_t value : std::span(kHostile).first(repeats(std::size(kHostile)))) {
+      for (const std::uint64_t value :
+           std::span(test::kHostile).first(repeats(std::size(test::kHostile)))) {
         std::vector<std::byte> bytes = genuine;
         std::memcpy(bytes.data() + at, &value, width);
         expect_harmless(bytes);
@@ -208,15 +197,7 @@ TEST_F(ForgedState, WithAValueOfTheFutureIsRefused) {
 TEST_F(ForgedState, WithDrawnBytesIsRefusedOrHarmless) {
   Random random(63);
   for (std::uint64_t forgery = 0; forgery < repeats(forgeries(), 16); ++forgery) {
-    std::vector<std::byte> bytes = genuine;
-    for (int changes = random.integer(1, 3); changes > 0; --changes) {
-      const std::uint64_t value =
-          random.chance(0.5) ? random.next() : kHostile[random.next() % std::size(kHostile)];
-      const std::size_t width = random.chance(0.4) ? 1 : random.chance(0.5) ? 4 : 8;
-      const std::size_t at = random.next() % (bytes.size() - width);
-      std::memcpy(bytes.data() + at - (random.chance(0.8) ? at % width : 0), &value, width);
-    }
-    expect_harmless(bytes);
+    expect_harmless(test::forged(genuine, random));
     ASSERT_FALSE(HasFatalFailure()) << forgery;
   }
   EXPECT_GT(refused, repeats(forgeries(), 16) / 10);
