@@ -14,12 +14,12 @@ import unittest
 sys.dont_write_bytecode = True
 ROOT = pathlib.Path(__file__).resolve().parents[2]
 BUILD = pathlib.Path(sys.argv[1]).resolve()
-sys.path[:0] = [str(ROOT / "tools/soak_parts"), str(BUILD / "python")]
+sys.path[:0] = [str(ROOT / "tools/soak_parts"), str(ROOT / "tools/evidence_parts"), str(BUILD / "python")]
 LOADER = importlib.machinery.SourceFileLoader("soak", str(ROOT / "tools/soak"))
 soak = importlib.util.module_from_spec(importlib.util.spec_from_loader("soak", LOADER))
 LOADER.exec_module(soak)
 
-import cells, clients, faults, judge, run as running
+import cells, clients, faults, fmea, judge, run as running
 
 os.environ.pop("CYCLONEDDS_URI", None)
 SEED = 3  # of a round of bodies
@@ -65,6 +65,20 @@ class Soak(unittest.TestCase):
         self.assertEqual(found, [])
         self.assertGreater(result["judged"], 0)
         self.assertGreater(result["faults"][0]["detected"], 0)
+
+    def test_has_the_times_until_a_line_tells_a_fault_by_its_code_and_kind(self):
+        def fault(kind, code, told_s):
+            return {"kind": kind, "code": code, "told_s": told_s}
+        told = [{"faults": [fault("KilledSender", "poses-late", 0.03), fault("StoppedSender", "poses-late", 0.5), fault("KilledSender", "poses-late", 0.05)]},
+                {"faults": [fault("KilledDaemon", "started", 1.0), fault("LeapingSource", "", 0.1), fault("KilledPartner", "partner-missing", None)]}]
+        times = soak.times_of(told)
+        self.assertEqual(list(times), ["poses-late"])
+        self.assertEqual([tuple(each.values()) for each in times["poses-late"]],
+                         [("KilledSender", "tools/soak", 50, 50, 2), ("StoppedSender", "tools/soak", 500, 500, 1)])
+        rows = fmea.rows((ROOT / "monitor/FAULTS.md").read_text())
+        for kind in faults.ALL:
+            for code in {kind.code, *getattr(kind, "codes", ())} - {"", "started"}:
+                self.assertTrue(any(fmea.tells(row, code) for row in rows), f"monitor/FAULTS.md has no row for {code}")
 
     def test_finds_bounds_that_are_false_of_a_truth_elsewhere(self):
         def shift(run):

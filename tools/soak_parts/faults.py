@@ -298,7 +298,7 @@ def inject(run, kind, rng, limit_s):
     shown_s = time.monotonic() - began
     told = run.until(fault.is_told, limit_s) is not None
     row = {"kind": kind.__name__, "of": fault.of, "detected": shown and told, "shown_s": shown_s if shown else None,
-           "told_s": time.monotonic() - began if told else None, "lacks": ""}
+           "told_s": time.monotonic() - began if told else None, "code": fault.code, "lacks": ""}
     if not row["detected"]:
         row["lacks"] = f"shown: {shown}, told by [{fault.code}]: {told}"
     fault.end()
