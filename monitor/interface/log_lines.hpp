@@ -138,9 +138,9 @@ inline constexpr LogLine<Text, double, std::int64_t, Text, std::int64_t, std::in
     "that zones flicker; age_limit_ms of {} would fit"};
 inline constexpr LogLine<Text, double, Text> kOtherClock{
     "other-clock", kWarn,
-    "{} are stamped {:+.3f} s off the time at which they are sent: by a clock of their own. For "
-    "the /clock of a simulation, say --use-sim-time; {} would take the time at which they are "
-    "sent"};
+    "{} are stamped {:+.3f} s off the time at which they are sent: by a clock of their own. The "
+    "/clock of a simulation needs --use-sim-time here, and use_sim_time at each sender; {} would "
+    "take the time at which they are sent"};
 inline constexpr LogLine<> kSimTimeAwaited{
     "sim-time-awaited", kWarn,
     "the simulated time is not known, and no input counts: no message of rosgraph_msgs/msg/Clock "
