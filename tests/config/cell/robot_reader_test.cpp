@@ -93,6 +93,12 @@ TEST_F(Robots, EveryTypeOfJointHasItsVariablesAndLimits) {
     if (joint.name == "slide") {
       EXPECT_EQ(joint.axis, Vec3(1, 0, 0));
     }
+    if (joint.name == "grip") {
+      EXPECT_EQ(joint.axis, Vec3(1, 0, 0)) << "the default of URDF";
+    }
+    if (joint.name == "table") {
+      EXPECT_LT((joint.plane_x.cross(joint.plane_y) - joint.axis).norm(), 1e-15) << "right-handed";
+    }
     if (joint.name != "grip2") continue;
     EXPECT_EQ(joint.variable, 2u);
     EXPECT_EQ(joint.multiplier, -2.0);
