@@ -27,6 +27,34 @@ TEST(CellLimits, TooManyPairsThatHaveToBePublishedAreRefused) {
   EXPECT_EQ(published(""), 4096);
 }
 
+// 91 objects have 4,095 pairs.
+TEST(CellLimits, AsManyPublishedPairsAsAReportCarriesAreAcceptedAndOneMoreIsNot) {
+  std::string objects = "objects:\n";
+  for (int i = 0; i < 93; ++i) {
+    objects += "  - {name: o" + std::to_string(i) + (i < 91 ? ", groups: [g]" : "") +
+               ", sphere: {radius: 1}}\n";
+  }
+  const std::string most = objects +
+                           "pairs:\n  - {between: [g, g], publish: true}\n"
+                           "  - {between: [o91, o92], publish: true}\n";
+  EXPECT_EQ(scene_of(cell_text(most)).pairs.size(), 4096u);
+  EXPECT_THAT(errors_of(cell_text(most + "  - {between: [o0, o91], publish: true}\n")),
+              testing::HasSubstr("found 4097 pairs with publish: true"));
+}
+
+TEST(CellLimits, AsManySourcesAsCanBeToldApartAreAcceptedAndOneMoreIsNot) {
+  const auto text = [](int sources) {
+    std::string objects = "objects:\n";
+    for (int i = 0; i < sources; ++i) {
+      objects += "  - {name: o" + std::to_string(i) + ", groups: [g], source: s" +
+                 std::to_string(i) + ", sphere: {radius: 1}}\n";
+    }
+    return cell_text(objects + "pairs: [{between: [g, g]}]\n");
+  };
+  EXPECT_EQ(scene_of(text(15)).objects.size(), 15u);
+  EXPECT_THAT(errors_of(text(16)), testing::HasSubstr("'s15' after 15 others"));
+}
+
 TEST(CellLimits, TooManyObjectsAndZonesAreRefused) {
   std::string objects = "objects:\n", zones = "zones:\n";
   for (int i = 0; i < 4097; ++i) {

@@ -232,7 +232,9 @@ TEST_F(Robots, WithoutAnSrdfNeighboursMayTouchAndAreNamed) {
   EXPECT_FALSE(watched(cell, "arm", "mast"));
   EXPECT_FALSE(watched(cell, "arm", "hand"));
   EXPECT_TRUE(watched(cell, "mast", "hand"));
-  EXPECT_THAT(cell.robots.front().notes, testing::Contains(HasSubstr("mast - arm, arm - hand")));
+  EXPECT_THAT(
+      cell.robots.front().notes,
+      testing::Contains("no SRDF: these neighbours are not watched: mast - arm, arm - hand"));
 }
 
 TEST_F(Robots, SeveralStandOnEachOtherOnObjectsAndInTheWorld) {
