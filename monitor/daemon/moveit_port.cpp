@@ -193,7 +193,8 @@ bool MoveItPort::begins(std::uint64_t identity, std::uint64_t revision) {
 void MoveItPort::go_on_from_heard(std::uint64_t revision) {
   const Lock lock(mutex_);
   if (!std::exchange(heard_.is_new, false)) return;
-  static_cast<void>(keeper_.restore(heard_.bytes));
+  if (!keeper_.restore(heard_.bytes))
+    log_line(lines::kPartnerStateRefused, "what it kept of MoveIt does not fit");
   const auto done = changes_until(heard_.changes, revision);
   const auto own = changes_until(changes_, revision);
   const auto last = std::ranges::find_if(own.rbegin(), own.rend(),

@@ -76,8 +76,9 @@ void MoveItMessages::settle(const Now& now) {
   waits_ = false;
   std::vector<std::string> topics;
   for (const NamedTopic& each : named()) topics.push_back(each.name);
-  out_.tell(News(lines::kMoveItSilent,
-                 fmt::format("there is no publisher of {}", fmt::join(topics, " or "))));
+  out_.tell(News(
+      lines::kMoveItSilent,
+      fmt::format("there is no publisher of {} with a type of MoveIt", fmt::join(topics, " or "))));
 }
 
 std::int64_t MoveItMessages::patience_ns() const {

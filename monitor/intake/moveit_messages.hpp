@@ -13,8 +13,8 @@ class MoveItMessages final : public Decoder {
   // Receives each message of the topics that the cell names.
   using Use = std::function<void(moveit::RawScene message)>;
 
-  // Without `use`, no topic is wanted; then, messages that the cell would use are named once. In a
-  // log, no publisher is missed.
+  // Without `use`, no topic is wanted; then, messages that the cell would use are named once. A
+  // missing publisher is not reported for a log.
   MoveItMessages(const Cell& cell, Use use, bool is_log, Outlet& out);
 
   [[nodiscard]] std::optional<Wanted> wants(const TopicName& topic) override;
@@ -25,13 +25,14 @@ class MoveItMessages final : public Decoder {
   void settle(const Now& now) override;
   [[nodiscard]] std::int64_t patience_ns() const override;
 
-  static constexpr std::int64_t kMissingNs = 5'000'000'000;  // without a publisher, it is told
+  static constexpr std::int64_t kMissingNs =
+      5'000'000'000;  // then, the log names missing publishers
 
  private:
   const MoveItInputs* inputs_;
   Use use_;
   Outlet& out_;
-  bool waits_;                  // for a publisher of any of the topics
+  bool waits_;                  // no topic has had a publisher yet
   std::int64_t since_ns_ = -1;  // CLOCK_MONOTONIC; -1: never settled
 };
 

@@ -3,8 +3,8 @@
 #include <array>
 #include <cstdint>
 #include <utility>
-#include <variant>
 
+#include "monitor/bodies/tracked_object.hpp"
 #include "monitor/inputs/state_bytes.hpp"
 #include "monitor/intake/scene_translator.hpp"
 
@@ -73,9 +73,6 @@ class Reader {
   StateReader in_;
 };
 
-// The poses of save() have passed this check before.
-bool is_checked(const Pose& pose) { return std::holds_alternative<Pose>(checked_pose(pose, "")); }
-
 }  // namespace
 
 void SceneTranslator::save(std::vector<std::byte>& bytes) const {
@@ -107,14 +104,14 @@ bool SceneTranslator::restore(std::span<const std::byte> bytes) {
   for (std::size_t left = in.count(); left > 0; --left) {
     const std::string name = in.text();
     const Pose world_from_frame = in.pose();
-    if (!is_checked(world_from_frame)) return false;
+    if (!is_usable(world_from_frame)) return false;
     read.world_from_frame_[name] = world_from_frame;
   }
   for (std::size_t left = in.count(); left > 0; --left) {
     Subframe& subframe = read.subframes_[in.text()];
     subframe.object = in.text();
     subframe.object_from_subframe = in.pose();
-    if (!is_checked(subframe.object_from_subframe)) return false;
+    if (!is_usable(subframe.object_from_subframe)) return false;
   }
   for (std::size_t left = in.count(); left > 0; --left) {
     const std::string name = in.text();

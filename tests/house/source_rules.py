@@ -9,7 +9,7 @@ MOST_LINES, MOST_FUNCTION_LINES = 400, 80
 # the rest has a verb cannot be decided by a list, so it is not.
 NO_BEGINNING = set("""also and again because but else hence it its like nor not or otherwise so than that their them
 then therefore they those thus too which who whom whose yet""".split())
-# Locks that clang cannot check. What builds alone against ROS 2 has no headers of the product.
+# Clang cannot check these locks. Packages that build alone against ROS 2 lack the product's headers.
 _BARE_LOCK = re.compile(r"\bstd::(\w*mutex|lock_guard|unique_lock|scoped_lock|shared_lock)\b")
 _OF_LOCKS, _WITHOUT_LOCKS = ("core/", "config/", "monitor/", "tools/"), ("monitor/interface/mutex.hpp", "tools/ros2/")
 _PARTS = re.compile(r"[A-Z]+(?![a-z])|[A-Z]?[a-z]+|\d+")

@@ -1,4 +1,4 @@
-// Bytes of a partner that a stranger has changed: their length and checksum fit.
+// Changes bytes of a partner as a stranger may: their length stays.
 #pragma once
 
 #include <cstddef>
@@ -11,7 +11,8 @@
 
 namespace clearance::test {
 
-// A NaN, all bits, -1, infinities, 1e300, the last integers, -0, and few.
+// These are a NaN, all bits set, -1, infinities, 1e300, the largest integers, a sign bit, and small
+// integers.
 inline constexpr std::uint64_t kHostile[] = {0x7ff8'0000'0000'0000,
                                              ~std::uint64_t{0},
                                              0xbff0'0000'0000'0000,
@@ -25,7 +26,7 @@ inline constexpr std::uint64_t kHostile[] = {0x7ff8'0000'0000'0000,
                                              1,
                                              2};
 
-// One to three fields have other values. `genuine` has more than eight bytes.
+// Overwrites one to three places, most of them aligned. `genuine` has more than eight bytes.
 [[nodiscard]] inline std::vector<std::byte> forged(std::vector<std::byte> genuine, Random& random) {
   for (int changes = random.integer(1, 3); changes > 0; --changes) {
     const std::uint64_t value =

@@ -68,13 +68,13 @@ class Soak(unittest.TestCase):
 
     def test_has_the_times_until_a_line_tells_a_fault_by_its_code_and_kind(self):
         def fault(kind, code, told_s):
-            return {"kind": kind, "code": code, "told_s": told_s}
-        told = [{"faults": [fault("KilledSender", "poses-late", 0.03), fault("StoppedSender", "poses-late", 0.5), fault("KilledSender", "poses-late", 0.05)]},
+            return {"kind": kind, "code": code, "told_s": told_s, "detected": told_s is not None}
+        told = [{"faults": [fault("KilledSender", "poses-late", 0.03), fault("StoppedSender", "poses-late", 0.5), fault("KilledSender", "poses-late", 0.05), fault("KilledSender", "poses-late", 0.2)]},
                 {"faults": [fault("KilledDaemon", "started", 1.0), fault("LeapingSource", "", 0.1), fault("KilledPartner", "partner-missing", None)]}]
         times = soak.times_of(told)
         self.assertEqual(list(times), ["poses-late"])
         self.assertEqual([tuple(each.values()) for each in times["poses-late"]],
-                         [("KilledSender", "tools/soak", 50, 50, 2), ("StoppedSender", "tools/soak", 500, 500, 1)])
+                         [("KilledSender", "tools/soak", 50, 200, 3), ("StoppedSender", "tools/soak", 500, 500, 1)])
         rows = fmea.rows((ROOT / "monitor/FAULTS.md").read_text())
         for kind in faults.ALL:
             for code in {kind.code, *getattr(kind, "codes", ())} - {"", "started"}:

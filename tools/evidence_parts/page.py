@@ -80,9 +80,9 @@ def of(evidence):
 <h2>Promises</h2><table><tr><th>id<th>promise<th>tests in this run</tr>{promises(evidence)}</table>
 <h2>Assumptions of use</h2><table><tr><th>id<th>assumption<th>what detects a breach<th>tests in this run</tr>
 {assumptions(evidence)}</table>
-<h2>Faults: cause, effect, detection, reaction</h2><p>The rows are those of monitor/FAULTS.md. Times are ticks of 1 ms from
-the beginning of a fault until it is told, median / longest of so many runs, by kind: of the campaign of inputs that lie,
-and of tools/soak, which reads the log a hundred times a second.
+<h2>Faults: cause, effect, detection, reaction</h2><p>The rows are those of monitor/FAULTS.md. Times are in
+ticks of 1 ms, from the beginning of a fault until it is told: median / longest of the runs, by kind. They come from the
+campaign of inputs that lie, and from tools/soak, which looks a hundred times a second.
 A row without an effect has the one that FAULTS.md states first: bounds are wider or unknown, and nothing unknown is clear.</p>
 <table><tr><th>section<th>cause<th>effect<th>detection<th>time until detected<th>reaction<th>tests</tr>{fmea(evidence)}</table>
 <h2>Coverage</h2><table><tr><th>room<th>branches<th>MC/DC</tr>{coverage(evidence)}</table>

@@ -2,7 +2,7 @@
 
 Licences are what Debian's copyright files name. They are comments, since their names are not always those of SPDX.
 """
-import hashlib, json, pathlib, re, subprocess
+import hashlib, json, os, pathlib, re, subprocess
 
 
 def lines(*command, **more):
@@ -69,8 +69,9 @@ def of_npm(root):
 
 def document(root, build):
     """The same build gives the same bytes: the time is that of the commit."""
-    commit, created = lines("git", "log", "-1", "--format=%H%n%cd", "--date=format-local:%Y-%m-%dT%H:%M:%SZ", cwd=root,
-                            env={"TZ": "UTC", "PATH": "/usr/bin:/bin"})[:2]
+    found = lines("git", "log", "-1", "--format=%H%n%cd", "--date=format-local:%Y-%m-%dT%H:%M:%SZ", cwd=root,
+                  env={**os.environ, "TZ": "UTC"})
+    commit, created = found[:2] if len(found) > 1 else ("not known", "1970-01-01T00:00:00Z")  # sources without a history
     version = re.search(r"project\(\w+ VERSION (\S+)", (root / "CMakeLists.txt").read_text())
     own = {"SPDXID": "SPDXRef-Clearance", "name": "clearance", "versionInfo": version.group(1) if version else commit,
            "downloadLocation": "NOASSERTION", "filesAnalyzed": False, "licenseConcluded": "NOASSERTION",

@@ -31,7 +31,7 @@ def of(root, build):
         "random_cases": "all" if "CLEARANCE_ALL_REPEATS" in os.environ else
                         "a share, as in tools/check (with CLEARANCE_ALL_REPEATS=1: all)",
         "long_runs": {name: outcome.read(root, name) for name in outcome.LONG_RUNS},
-        "not_run": ["tests that the matrix does not name (tools/check runs all)",
+        "not_run": ["tests that the matrix does not name (tools/check --more runs all)",
                     "sanitizers, fuzzers and campaigns (tools/check --all)"],
     }
 

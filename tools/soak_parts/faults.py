@@ -118,7 +118,12 @@ class BehindSource(OfSource):
         return self.run.logged("joints-contradict") + self.run.logged("poses-contradict")
 
     def is_told(self):
-        return super().is_told() or self.contradictions() > self.contradicted
+        if super().is_told():
+            return True
+        if self.contradictions() > self.contradicted:
+            self.code = self.code.replace("late", "contradict")
+            return True
+        return False
 
 
 class RivalSource(OfSource):

@@ -1,12 +1,13 @@
-// How far links may be from where forward kinematics puts them.
+// Links lie within these errors of the places that forward kinematics computes.
 //
-// Oracle: a straight chain in which each joint turns by its error, all the same way, so that the
-// displacements of a link add up. Each length and each place loses its own share besides.
+// Oracle: a straight chain in which each joint turns by its error in the same direction, so that
+// the displacements of a link add up. Rounding adds a share of each length and of each place.
 #include "config/scene/chain_rounding.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 #include "core/shapes.hpp"
@@ -24,7 +25,7 @@ struct Chain {
   std::vector<JointVariable> variables = std::vector<JointVariable>(1);
 };
 
-// All along x: a base, and joints of one type.
+// Makes a chain along x: a base, and joints of one type.
 Chain straight(JointType type) {
   Chain chain;
   Robot& robot = chain.robots[0];
@@ -38,7 +39,7 @@ Chain straight(JointType type) {
   return chain;
 }
 
-// `turned`: of each joint, rad. `slide`: of each joint, m.
+// `turned` is the error of each joint, rad; `slide` is how far each joint moves, m.
 ChainError expected(std::size_t link, double turned, double slide) {
   const auto place = [&](std::size_t i) {
     return kStandsAt + static_cast<double>(i) * (kLinkLength + slide);
@@ -90,20 +91,21 @@ TEST(ChainRounding, WidensEveryErrorOfAnObjectsParts) {
   constexpr double kShift = 1e-9, kTurn = 1e-10, kArm = 3.0, kRadius = 0.5;
   Object object;
   object.parts = {{"ball", test::made(point(Vec3::Zero(), kRadius)), test::at(kArm, 0, 0)},
-                  {"cube", test::cube(), {}}};
+                  {"cube", test::cube(), {}},
+                  {"far", test::cube(), {}}};
   object.parts[1].shape.inner_radius = 0.5 * kShift;
   const Object before = object;
   account_for({.shift = kShift, .turn = kTurn}, object);
   // The lever arm counts twice.
   EXPECT_NEAR(object.pose_error, kShift + 2.0 * kTurn * (kArm + kRadius), 1e-15);
-  for (std::size_t i = 0; i < 2; ++i) {
+  for (std::size_t i = 0; i < 3; ++i) {
     const ConvexBody &was = before.parts[i].shape, &is = object.parts[i].shape;
     EXPECT_EQ(is.position_error, was.position_error + object.pose_error) << i;
     EXPECT_EQ(is.error_bound_as_a, was.error_bound_as_a + object.pose_error) << i;
     EXPECT_EQ(is.error_bound_as_b, was.error_bound_as_b + object.pose_error) << i;
   }
-  EXPECT_EQ(object.parts[0].shape.inner_radius,
-            std::max(0.0, before.parts[0].shape.inner_radius - object.pose_error));
+  EXPECT_EQ(object.parts[2].shape.inner_radius,
+            before.parts[2].shape.inner_radius - object.pose_error);
   EXPECT_EQ(object.parts[1].shape.inner_radius, 0.0) << "nothing is certainly inside";
 }
 

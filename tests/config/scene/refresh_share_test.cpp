@@ -14,7 +14,7 @@
 namespace clearance {
 namespace {
 
-// How many ticks evaluate all pairs once. No pair may need more than the budget.
+// Returns the number of ticks that evaluate all pairs once. No pair may need more than the budget.
 std::uint64_t ticks_for(const std::vector<std::uint64_t>& pairs, std::uint64_t budget) {
   std::uint64_t ticks = 1, left = budget;
   for (const std::uint64_t part_pairs : pairs) {
@@ -37,6 +37,7 @@ TEST(RefreshCost, QueriesOfEachTickRefreshAllPairsInTimeWhateverTheirOrder) {
     ASSERT_GE(queries, std::ranges::max(pairs)) << trial;
     EXPECT_LE(ticks_for(pairs, queries), ticks) << trial;
     EXPECT_LE(queries, cost.part_pairs) << "one tick is enough for all";
+    EXPECT_LE(queries, cost.part_pairs / ticks + std::ranges::max(pairs)) << trial;
   }
 }
 
