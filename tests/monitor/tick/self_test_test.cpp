@@ -98,7 +98,8 @@ INSTANTIATE_TEST_SUITE_P(SelfTests, FlippedConstants,
 TEST_P(FlippedConstants, AreFoundWithinTheNumberOfTicksThatIsToldAndNamed) {
   MovingCell moving(GetParam());
   const char* const asked = std::getenv("CLEARANCE_FLIPS");
-  const int flips = (asked == nullptr ? static_cast<int>(repeats(10'000, 8)) : std::atoi(asked)) / 6;
+  const int flips =
+      (asked == nullptr ? static_cast<int>(repeats(10'000, 8)) : std::atoi(asked)) / 6;
   Random random(63);
   const auto blocks = moving.tick().memory().blocks();
   const std::size_t bytes = moving.tick().bytes();
