@@ -1,6 +1,8 @@
 // Foxglove's own client: subscribes to every channel and decodes the messages by their schemas, of a daemon until it has
-// REPORTS reports and a message of each topic; of a recording, it sets the time and waits until that stands there:
+// REPORTS reports and a message of each topic, or until a status has TEXT, where it prints "follows" once it has 60
+// reports; of a recording, it sets the time and waits until that stands there:
 //   node foxglove.mjs URL reports REPORTS TOPICS...
+//   node foxglove.mjs URL status TEXT
 //   node foxglove.mjs URL time TIME
 import { parseIDL } from "@foxglove/omgidl-parser";
 import protocol from "@foxglove/ws-protocol";
@@ -11,6 +13,7 @@ import { markersOf, plain, readerOf } from "./decode.mjs";
 const { FoxgloveClient } = protocol;
 const [url, what, figure, ...topics] = process.argv.slice(2);
 const STANDS = 20; // frames without a message
+const FOLLOWS = 60; // reports
 const client = new FoxgloveClient({ ws: new WebSocket(url, [FoxgloveClient.SUPPORTED_SUBPROTOCOL]) });
 const found = { channels: {}, first: {}, last: {}, cycles: [], times: [], statuses: [], redefined: [] };
 const definitions = new Map(); // of all channels, by name
@@ -18,7 +21,10 @@ const channels = new Map();
 
 client.on("serverInfo", ({ name, capabilities }) => Object.assign(found, { name, capabilities }));
 client.on("error", (error) => { throw error; });
-client.on("status", ({ level, message }) => found.statuses.push({ level, message }));
+client.on("status", ({ level, message }) => {
+  found.statuses.push({ level, message });
+  sayIfTold();
+});
 let quiet = 0;
 client.on("time", () => {
   quiet += 1;
@@ -44,7 +50,9 @@ client.on("message", ({ subscriptionId, data }) => {
   if (topic.endsWith("distances")) {
     found.cycles.push(message.cycle);
     found.times.push(message.now_ns);
+    if (what === "status" && found.cycles.length === FOLLOWS) console.log('"follows"');
   }
+  sayIfTold();
   found.last[topic] = message.markers ? markersOf(message) : message;
   found.first[topic] ??= found.last[topic];
   if (what === "reports" && found.cycles.length >= Number(figure) && topics.every((each) => found.last[each])) say();
@@ -57,6 +65,11 @@ function define(schema) {
     if ((definitions.get(name) ?? text) !== text) found.redefined.push(name);
     definitions.set(name, text);
   }
+}
+
+function sayIfTold() {
+  if (what !== "status" || found.cycles.length < FOLLOWS) return;
+  if (found.statuses.some(({ message }) => message.includes(figure))) say();
 }
 
 function say() {
