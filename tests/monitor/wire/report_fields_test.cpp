@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <regex>
@@ -54,7 +55,9 @@ Report numbered_report(const Scene& scene, std::uint64_t first) {
   report.zones.resize(scene.zones.size());
   report.separated_zones.resize(1);
   report.separated_pairs.resize(2);
+  report.stops.resize(2);
   report.contacts.resize(contact_pairs(scene).size());
+  report.hidden.resize(2);
   report.gradients.rates.resize(rows.variables.size());
   report.gradients.drifts.resize(rows.rows.size());
   report.gradients.alternatives.resize(rows.rows.size());
@@ -107,6 +110,18 @@ Scene published_cell() {
   return scene;
 }
 
+// Messages with room for two stops of robots and two hidden pairs besides: the cell has none.
+Sample<clearance_msg_Distances> roomy_distances(const Scene& scene) {
+  Sample<clearance_msg_Distances> message = make_distances(scene);
+  reserve_sequence(message->hidden, 2);
+  return message;
+}
+Sample<clearance_msg_Separation> roomy_separation(const Scene& scene) {
+  Sample<clearance_msg_Separation> message = make_separation(scene);
+  reserve_sequence(message->stops, 2);
+  return message;
+}
+
 class ReportFields : public testing::TestWithParam<std::uint64_t> {
  protected:
   Scene scene = published_cell();
@@ -114,7 +129,7 @@ class ReportFields : public testing::TestWithParam<std::uint64_t> {
 };
 
 TEST_P(ReportFields, OfDistancesComeThroughTheWire) {
-  Sample<clearance_msg_Distances> message = make_distances(scene);
+  Sample<clearance_msg_Distances> message = roomy_distances(scene);
   const SourceUse use{SourceName("arm"), 99};
   ASSERT_TRUE(to_wire(report, {&use, 1}, 77, *message));
   const auto came = through_the_wire(*message);
@@ -138,12 +153,13 @@ TEST_P(ReportFields, OfZonesComeThroughTheWire) {
 }
 
 TEST_P(ReportFields, OfSeparationComeThroughTheWire) {
-  Sample<clearance_msg_Separation> message = make_separation(scene);
+  Sample<clearance_msg_Separation> message = roomy_separation(scene);
   to_wire(report, 77, *message);
   const auto came = through_the_wire(*message);
   TickFields::for_each(ExpectSame{}, report, *came);
   ExpectSame{}(Field{"pairs"}, report.separated_pairs, came->pairs);
   ExpectSame{}(Field{"zones"}, report.separated_zones, came->zones);
+  ExpectSame{}(Field{"stops"}, report.stops, came->stops);
   EXPECT_EQ(77, came->publish_ns);
 }
 
@@ -212,10 +228,11 @@ template <class Record>
 class ListOf : public testing::Test {};
 using Records =
     testing::Types<clearance_msg_SourceUse, clearance_msg_PairDistance, clearance_msg_Distances,
-                   clearance_msg_ZoneState, clearance_msg_PairSeparation,
-                   clearance_msg_ZoneSeparation, clearance_msg_Separation,
-                   clearance_msg_JointGradient, clearance_msg_PairGradient,
-                   clearance_msg_GradientAlternative, clearance_msg_Gradients>;
+                   clearance_msg_ContactState, clearance_msg_HiddenState, clearance_msg_ZoneState,
+                   clearance_msg_PairSeparation, clearance_msg_ZoneSeparation,
+                   clearance_msg_RobotStop, clearance_msg_Separation, clearance_msg_JointGradient,
+                   clearance_msg_PairGradient, clearance_msg_GradientAlternative,
+                   clearance_msg_Gradients>;
 TYPED_TEST_SUITE(ListOf, Records);
 
 TYPED_TEST(ListOf, NamesEveryFieldThatTheIdlHasOnce) {
@@ -258,6 +275,21 @@ TYPED_TEST(OrderOfList, IsThatOfTheIdl) {
   EXPECT_EQ(listed, defined);
 }
 
+template <class... Record>
+std::set<std::string> types_of(testing::Types<Record...>) {
+  return {std::string(FieldsOf<Record>::kType)...};
+}
+
+TEST(Lists, AreThoseOfEveryStructThatADaemonWrites) {
+  std::set<std::string> expected;
+  for (const auto& [name, of] : our_idl().structs) expected.insert(name);
+  for (const char* input : {"Vector3", "Quaternion", "ObjectPose", "PoseBatch", "JointStates"})
+    EXPECT_EQ(expected.erase(input), 1u) << input;
+  std::set<std::string> listed = types_of(Records());
+  listed.merge(types_of(SlowRecords()));
+  EXPECT_TRUE(std::ranges::includes(listed, expected)) << testing::PrintToString(expected);
+}
+
 // The bytes of one field, found by its name in the IDL: the IDL is reduced to that field. `around`
 // is the IDL of the structs that contain the field's struct. `begin` is the offset at which the
 // value then begins.
@@ -298,16 +330,22 @@ void expect_names_of_the_idl(const Record& record, std::span<const std::byte> cd
 
 TEST_P(ReportFields, AreTheMembersOfTheirNames) {
   CdrEncoder encoder;
-  Sample<clearance_msg_Distances> distances = make_distances(scene);
+  Sample<clearance_msg_Distances> distances = roomy_distances(scene);
   ASSERT_TRUE(to_wire(report, {}, 77, *distances));
   const auto distances_cdr = encoder.encode(*distances);
   expect_names_of_the_idl(*distances, distances_cdr, "", "Distances", false);
   expect_names_of_the_idl(distances->minimum, distances_cdr,
                           "@final struct Distances { PairDistance minimum; };", "Distances", false);
+  expect_names_of_the_idl(distances->contacts._buffer[0], distances_cdr,
+                          "@final struct Distances { sequence<ContactState> contacts; };",
+                          "Distances", true);
+  expect_names_of_the_idl(distances->hidden._buffer[0], distances_cdr,
+                          "@final struct Distances { sequence<HiddenState> hidden; };", "Distances",
+                          true);
   clearance_msg_ZoneState zone{};
   to_wire(scene, report, 0, zone);
   expect_names_of_the_idl(zone, encoder.encode(zone), "", "ZoneState", false);
-  Sample<clearance_msg_Separation> separation = make_separation(scene);
+  Sample<clearance_msg_Separation> separation = roomy_separation(scene);
   to_wire(report, 77, *separation);
   const auto separation_cdr = encoder.encode(*separation);
   expect_names_of_the_idl(*separation, separation_cdr, "", "Separation", false);
@@ -317,6 +355,9 @@ TEST_P(ReportFields, AreTheMembersOfTheirNames) {
   expect_names_of_the_idl(separation->zones._buffer[0], separation_cdr,
                           "@final struct Separation { sequence<ZoneSeparation> zones; };",
                           "Separation", true);
+  expect_names_of_the_idl(separation->stops._buffer[0], separation_cdr,
+                          "@final struct Separation { sequence<RobotStop> stops; };", "Separation",
+                          true);
   GradientMessage gradients(scene);
   const auto& message = gradients.of(report, 77);
   const auto gradients_cdr = encoder.encode(message);
