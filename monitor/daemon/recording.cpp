@@ -337,7 +337,7 @@ std::string Recording::files_text() const {
 // recorder's state is not known.
 std::string Recording::summary() const {
   if (complete_) {
-    return fmt::format("recorded {} messages, {:.1f} MB, in {}\n", recorder_.messages(),
+    return fmt::format("recorded {}, {:.1f} MB, in {}\n", counted(recorder_.messages(), "message"),
                        1e-6 * static_cast<double>(recorder_.bytes()), files_text());
   }
   const std::string why = hangs_             ? "the disk takes nothing"

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "config/text/sentences.hpp"
 #include "monitor/files/file_error.hpp"
 
 namespace clearance {
@@ -78,8 +79,8 @@ double McapReader::progress() const noexcept {
 void McapReader::damage(std::uint64_t offset, const std::string& what) {
   done_ = true;
   chunk_ = {};
-  error_ = fmt::format("{} is damaged at byte {} of {}: {}. Before that, {} messages were read",
-                       path_.string(), offset, file_.size(), what, messages_);
+  error_ = fmt::format("{} is damaged at byte {} of {}: {}. Before that came {}", path_.string(),
+                       offset, file_.size(), what, counted(messages_, "message"));
   if (messages_ > 0)
     error_ += fmt::format(", the last {} after the first", seconds(last_ns_ - first_ns_));
 }

@@ -262,7 +262,8 @@ std::vector<std::string> BagLog::topics(const IsListed& is_listed) const {
   std::vector<std::string> there;
   for (const auto& [name, topic] : topics_) {
     if (is_listed(topic.of.type))
-      there.push_back(fmt::format("{} ({}, {} messages)", name, topic.of.type, topic.messages));
+      there.push_back(
+          fmt::format("{} ({}, {})", name, topic.of.type, counted(topic.messages, "message")));
   }
   return there;
 }

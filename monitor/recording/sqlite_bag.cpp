@@ -5,6 +5,7 @@
 #include <sqlite3.h>
 
 #include "config/text/file_bytes.hpp"
+#include "config/text/sentences.hpp"
 #include "monitor/files/file_error.hpp"
 
 namespace clearance {
@@ -77,7 +78,7 @@ bool SqliteBag::has_tables() {
 bool SqliteBag::fail() {
   error_ = fmt::format("{} cannot be read as a rosbag2 file (SQLite 3): {}", path_.string(),
                        file_ ? sqlite3_errmsg(file_.get()) : "no memory");
-  if (read_ > 0) error_ += fmt::format(". Before that, {} messages were read", read_);
+  if (read_ > 0) error_ += fmt::format(". Before that came {}", counted(read_, "message"));
   messages_.reset();
   return false;
 }

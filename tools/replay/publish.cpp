@@ -279,8 +279,8 @@ int Publishing::run() {
     if (monotonic_ns() - shown_ns_ < 100 * kMillisecond) continue;
     shown_ns_ = monotonic_ns();
     bar_.show(reader.progress(),
-              fmt::format("{:.1f} s, {} messages",
-                          static_cast<double>(message.log_ns - first_ns_) * 1e-9, published_));
+              fmt::format("{:.1f} s, {}", static_cast<double>(message.log_ns - first_ns_) * 1e-9,
+                          counted(published_, "message")));
   }
   return finish(reader);
 }

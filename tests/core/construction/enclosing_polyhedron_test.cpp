@@ -54,6 +54,32 @@ TEST(EnclosingPolyhedron, HoldsEveryPointOfTheBodiesExactly) {
   }
 }
 
+// The vertices of the bodies are known to a millimetre only. Oracle: closed forms of support
+// values.
+TEST(EnclosingPolyhedron, HoldsBodiesWhereverTheirPositionErrorLetsThemBe) {
+  constexpr double kError = 1e-3;
+  const Vec3 half(0.3, 0.2, 0.1);
+  ConvexBody solid = test::made(box(half)), round = test::made(cylinder(0.25, 0.5));
+  solid.position_error = round.position_error = kError;
+  Random random(103);
+  for (int k = 0; k < 20; ++k) {
+    const Pose place{random.in_box(1.0), random.rotation()};
+    const Mat3 turned = place.orientation.toRotationMatrix();
+    for (const ConvexBody* body : {&solid, &round}) {
+      const PlacedShape placed{body, place};
+      const auto around = enclosing_polyhedron({&placed, 1});
+      ASSERT_TRUE(around);
+      for (const Facet& facet : around->facets) {
+        const Vec3 n = turned.transpose() * facet.normal;
+        const double farthest = body == &solid
+                                    ? n.cwiseAbs().dot(half)
+                                    : 0.25 * std::hypot(n.x(), n.y()) + 0.5 * std::abs(n.z());
+        EXPECT_GE(facet.offset, facet.normal.dot(place.position) + farthest + kError - 1e-14) << k;
+      }
+    }
+  }
+}
+
 TEST(EnclosingPolyhedron, HasNoMoreFacetsThanAskedFor) {
   Random random(102);
   for (const std::size_t facets : {6u, 12u, 32u}) {

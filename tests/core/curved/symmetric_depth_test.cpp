@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numbers>
 
+#include "core/curved/thorough.hpp"
 #include "core/distance.hpp"
 #include "core/shapes.hpp"
 #include "tests/shared/made.hpp"
@@ -94,6 +95,40 @@ TEST(SymmetricDepth, OfShallowEllipsoidsTakesNoCoverOfTheSphere) {
   EXPECT_NEAR(r.distance, -0.25, 1e-15);
   EXPECT_LE(r.upper - r.lower, 1e-13 * 5.0);
   EXPECT_LT(r.iterations, 40);
+}
+
+// The second body is beside the axis of the first one and tilted. Oracle: the overlap along the
+// best direction that a search finds, which is never below the depth.
+TEST(SymmetricDepth, OfSolidsBesideOneAxisIsNoMoreThanAnOverlap) {
+  Random random(43);
+  int known = 0, tight = 0;
+  const auto solid = [&] {
+    const auto extent = [&] { return random.uniform(0.2, 1.0); };
+    if (random.chance(0.3)) return made(cylinder(extent(), extent()));
+    return made(truncated_cone(extent(), extent(), extent()));
+  };
+  for (int k = 0; k < 400; ++k) {
+    const ConvexBody a = solid(), b = solid();
+    const bool is_tilted = random.chance(0.5);
+    const double aside = is_tilted ? 0.0 : random.log_uniform(1e-6, 0.2);
+    const double tilt = is_tilted ? random.log_uniform(1e-6, 0.3) : 0.0;
+    Vec3 across = random.direction();
+    across = Vec3(across.x(), across.y(), 0.0).normalized();
+    const Pose place{Vec3(0, 0, random.uniform(-0.5, 0.5)) + aside * across,
+                     test::turned(across, tilt)};
+    const RelativePose b_in_a = relative_pose(Pose{}, place);
+    CurvedPair pair(a, b, b_in_a);
+    const double least = least_symmetric_depth(pair, kInfinity);
+    if (!(least > 0.0)) continue;
+    ++known;
+    (void)pair.support(random.direction());
+    (void)bound_depth(pair, {});
+    const double overlap = -pair.bounds.lower;
+    EXPECT_LE(least, overlap + 1e-13 * pair.size) << k << ": " << aside << " m, " << tilt;
+    tight += least > overlap - 1e-3 * pair.size;
+  }
+  EXPECT_GT(known, 200);
+  EXPECT_GT(tight, 100);
 }
 
 }  // namespace

@@ -209,8 +209,8 @@ TEST_F(BagLogTest, NothingOfUseIsAnErrorThatNamesWhatIsThereInstead) {
   const ReadLog log = read({joint_state(kT, kT, {{"elbow"}, {1}}, "/arm/joint_commands"),
                             ros_text(kT, "hello", "/chatter")});
   EXPECT_THAT(log.error, HasSubstr("bag.mcap has nothing that moves this cell"));
-  EXPECT_THAT(log.error, HasSubstr("/arm/joint_commands (sensor_msgs/msg/JointState, 1 messages), "
-                                   "/chatter (std_msgs/msg/String, 1 messages)"));
+  EXPECT_THAT(log.error, HasSubstr("/arm/joint_commands (sensor_msgs/msg/JointState, 1 message), "
+                                   "/chatter (std_msgs/msg/String, 1 message)"));
   EXPECT_THAT(log.error, HasSubstr("--joint-topic"));
 }
 
