@@ -91,7 +91,7 @@ TEST_F(BagTool, TellsWhatIsMissing) {
   EXPECT_THAT(output, HasSubstr("expected --urdf and --srdf"));
   write_mcap_bag(folder / "none.mcap", {ros_text(kStart, "x", "/chatter")});
   EXPECT_EQ(1, replay("none.mcap", {}));
-  EXPECT_THAT(output, HasSubstr("there are /chatter (std_msgs/msg/String, 1 messages)"));
+  EXPECT_THAT(output, HasSubstr("there are /chatter (std_msgs/msg/String, 1 message)"));
   EXPECT_EQ(1, replay("nowhere.db3", {}));
   EXPECT_THAT(output, HasSubstr("nowhere.db3: No such file"));
   EXPECT_EQ(2, run(kReplay, {"publish", path("bag"), "--tick-hz", "100"}));
