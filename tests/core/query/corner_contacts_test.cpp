@@ -86,7 +86,7 @@ TEST(CornerContacts, AreCertifiedByTheirFeatures) {
 }
 
 TEST(CornerContacts, BoundsHoldWhileTheBoxesPartAndSink) {
-  for (const double away : {1e-13, 1e-9, 1e-5, 1e-2}) {
+  for (const double away : {3e-16, 1e-15, 4e-15, 1e-13, 1e-9, 1e-5, 1e-2}) {
     for (std::uint64_t seed = 0; seed < kContactSeeds / 6; ++seed) {
       const auto gap = [&](int k) { return std::array{0.0, away, 0.0, -away}[k % 4]; };
       const TouchingBoxes boxes = touching_boxes(100 + seed, gap);
