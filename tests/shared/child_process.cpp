@@ -30,6 +30,7 @@ void set_up(const ChildOptions& options, int output) {
     const rlimit limit{*options.most_descriptors, *options.most_descriptors};
     setrlimit(RLIMIT_NOFILE, &limit);
   }
+  std::signal(SIGHUP, SIG_DFL);  // nohup, below which the tests may run, has it ignored
   dup2(open("/dev/null", O_RDONLY), STDIN_FILENO);
   dup2(options.out < 0 ? output : options.out, STDOUT_FILENO);
   dup2(options.err < 0 ? output : options.err, STDERR_FILENO);

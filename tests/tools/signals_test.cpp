@@ -83,9 +83,6 @@ bool still_reports(test::Distances& distances) {
 
 class Signals : public test::RunsPrograms {
  protected:
-  // The programs inherit this. It matters where the tests themselves were started with nohup.
-  Signals() { std::signal(SIGHUP, SIG_DFL); }
-
   test::CellFile cell{test::small_cell("signals")};
   Cell read = cell.cell();
   DdsOptions dds = test::own_dds();

@@ -80,7 +80,7 @@ class RandomCell:
             "defaults": {"age_limit_ms": self.age_limit_ms}, "commands": {"from": [CLIENT]}, "questions": {"from": [CLIENT]},
             "capacity": {"objects": 4, "parts": 100, "pairs": 1000, "bytes": 1000000},
             "robots": [], "objects": [], "pairs": [], "zones": []}
-        spec = {"epoch_ns": epoch_ns, "robots": {}, "objects": {}}
+        spec = {"epoch_ns": epoch_ns, "age_limit_ms": self.age_limit_ms, "robots": {}, "objects": {}}
         self.groups = {"things": [], "movers": []}
         for i in range(rng.choice([1, 2, 2])):
             self.add_robot(rng, f"r{i}", spec, i)

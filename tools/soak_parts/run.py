@@ -14,7 +14,8 @@ class Process:
     def __init__(self, name, command, log, environment):
         self.name, self.log, self.samples, self.changes, self.recording = name, log, [], 0, None
         with log.open("a") as output:
-            self.process = subprocess.Popen([str(word) for word in command], stdin=subprocess.PIPE, stdout=output,
+            # Programs hear SIGHUP, also if nohup runs the soak.
+            self.process = subprocess.Popen(["env", "--default-signal=HUP", *map(str, command)], stdin=subprocess.PIPE, stdout=output,
                                             stderr=subprocess.STDOUT, text=True, env=environment)
 
     def tell(self, line):
