@@ -186,6 +186,41 @@ TEST(PoseMessages, WithOnePoseAndTwoTwistsOfAnObjectHaveNone) {
   }
 }
 
+TEST(JointMessages, ComeBackBitForBit) {
+  const Scene scene = scene_of_two_arms();
+  const JointNames names(scene);
+  for (const bool has_velocity : {false, true}) {
+    for (const bool stopping : {false, true}) {
+      PoseBatch sent{SourceName("arm"), 41, 0, {}};
+      for (const std::uint32_t variable : {2u, 0u}) {
+        JointSample& sample = sent.joints.emplace_back();
+        sample.variable = variable;
+        sample.stamp_ns = 77;
+        sample.position = 0.1 + variable;
+        sample.has_velocity = has_velocity;
+        sample.velocity = has_velocity ? -0.3 - variable : 0.0;
+        sample.stopping = stopping;
+      }
+      PoseBatch came{SourceName("other"), 1, 2, std::vector<PoseSample>(1)};
+      came.joints.resize(3);
+      from_wire(*make_joint_states(sent, scene), names, came);
+      EXPECT_EQ(came.source.view(), "arm");
+      EXPECT_EQ(came.sequence_number, 41u);
+      EXPECT_EQ(came.scene_revision, 0u) << "the names say what is meant";
+      EXPECT_TRUE(came.samples.empty());
+      ASSERT_EQ(came.joints.size(), sent.joints.size());
+      for (std::size_t i = 0; i < sent.joints.size(); ++i) {
+        EXPECT_EQ(came.joints[i].variable, sent.joints[i].variable);
+        EXPECT_EQ(came.joints[i].stamp_ns, 77);
+        EXPECT_EQ(came.joints[i].position, sent.joints[i].position);
+        EXPECT_EQ(came.joints[i].has_velocity, has_velocity);
+        EXPECT_EQ(came.joints[i].velocity, sent.joints[i].velocity);
+        EXPECT_EQ(came.joints[i].stopping, stopping);
+      }
+    }
+  }
+}
+
 TEST(JointMessages, OfAnEmptyBatchHaveNoNames) {
   const PoseBatch batch{SourceName("arm"), 9, 0, {}};
   const auto message = make_joint_states(batch, scene_of_two_arms());
