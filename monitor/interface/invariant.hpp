@@ -19,15 +19,16 @@ inline constexpr bool kMoreInvariantsChecked = false;
 #endif
 
 // Prints the broken invariant to standard error and ends the program, because its results can no
-// longer be trusted.
+// longer be trusted. `file`: without its folder, which two builds of one commit may name
+// differently.
 [[noreturn]] void invariant_broken(const char* what, const char* file, int line) noexcept;
 
 }  // namespace clearance
 
-#define CLEARANCE_INVARIANT(holds)                                 \
-  do {                                                             \
-    if constexpr (::clearance::kInvariantsChecked) {               \
-      if (!(holds)) [[unlikely]]                                   \
-        ::clearance::invariant_broken(#holds, __FILE__, __LINE__); \
-    }                                                              \
+#define CLEARANCE_INVARIANT(holds)                                      \
+  do {                                                                  \
+    if constexpr (::clearance::kInvariantsChecked) {                    \
+      if (!(holds)) [[unlikely]]                                        \
+        ::clearance::invariant_broken(#holds, __FILE_NAME__, __LINE__); \
+    }                                                                   \
   } while (false)
