@@ -11,7 +11,7 @@ def git(root, *command):
 
 
 def write(root, name, outcome, faults, **more):
-    """`outcome`: a line for a person. `faults`: what speaks against the commit, a line each."""
+    """`outcome`: a line for a person. `faults`: what speaks against the commit, a line each. `commit`: where it is not the present one."""
     file = root / "build" / name / "outcome.json"
     file.parent.mkdir(parents=True, exist_ok=True)
     is_changed = git(root, "status", "--porcelain", "--untracked-files=no") != ""
