@@ -13,8 +13,8 @@ namespace {
 
 // A joint is "joint NAME" in the list of refusals, a sensor "sensor NAME".
 std::string_view refused_of(std::string_view input) {
-  if (input.starts_with("joint ")) return "positions";
-  return input.starts_with("sensor ") ? "messages" : "poses";
+  if (input.starts_with("joint ")) return "position";
+  return input.starts_with("sensor ") ? "message" : "pose";
 }
 
 }  // namespace
@@ -54,7 +54,8 @@ std::size_t RefusalLog::update(const clearance_msg_Health& health, std::size_t m
     if (!is_due(refusals) || due++ >= most) continue;
     const auto& [what, cause] = key;
     log_line(lines::kRefused, refusals.count,
-             fmt::format("{} of {}", what, listed(refusals.inputs, kNamesALine)),
+             fmt::format("{}{} of {}", what, refusals.count == 1 ? "" : "s",
+                         listed(refusals.inputs, kNamesALine)),
              refusals.counted_s == 1 ? "second" : fmt::format("{} s", refusals.counted_s),
              refusals.last.empty() ? cause : fmt::format("{}, the last: {}", cause, refusals.last),
              refusals.total);

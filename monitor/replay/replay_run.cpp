@@ -316,8 +316,8 @@ void ReplayRun::note_counts() {
     std::ranges::copy(sensor_notes(*sensors, loop_.cell().scene),
                       std::back_inserter(result_.notes));
   for (std::size_t cause = 0; cause < kRejects; ++cause) {
-    note_count(result_.rejected[cause],
-               std::string("poses were refused: ") + name(static_cast<Reject>(cause)));
+    note_count(result_.rejected[cause], std::string("poses or positions of joints were refused: ") +
+                                            name(static_cast<Reject>(cause)));
   }
   const bool is_ahead = result_.rejected[static_cast<std::size_t>(Reject::kFuture)] > 0;
   if (is_ahead && feed_.log() != nullptr && !loop_.cell().ros.use_sim_time)

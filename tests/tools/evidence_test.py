@@ -87,14 +87,16 @@ class Evidence(unittest.TestCase):
 
             commit("one")
             self.assertEqual(outcome.read(root, "soak"), {"outcome": "not run (tools/soak)", "faults": []})
-            outcome.write(root, "soak", "9 faults", ["a leak"], rooms={"core": 1})
+            began = outcome.tree(root)
+            outcome.write(root, "soak", "9 faults", ["a leak"], began, rooms={"core": 1})
             self.assertEqual([outcome.read(root, "soak")[key] for key in ("outcome", "faults", "rooms")], ["9 faults", ["a leak"], {"core": 1}])
-            first = outcome.git(root, "rev-parse", "HEAD")[:12]
             commit("two")
+            outcome.write(root, "soak", "9 faults", ["a leak"], began)
+            first = began["commit"][:12]
             self.assertEqual(outcome.read(root, "soak"),
                              {"outcome": f"not run on this commit; on {first} it was: 9 faults", "faults": []})
             file.write_text("three")
-            outcome.write(root, "soak", "no fault", [])
+            outcome.write(root, "soak", "no fault", [], outcome.tree(root))
             self.assertIn(", changed it was: no fault", outcome.read(root, "soak")["outcome"])
 
     def test_FailsForProgramsOfAnotherCommitForChangedFilesAndForFaultsOfALongRun(self):

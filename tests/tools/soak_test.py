@@ -105,8 +105,10 @@ class Soak(unittest.TestCase):
                  "processes": [{"name": "daemon", "samples": [(9, 50.0)] * 6}]}
         self.assertEqual(judge.verdict(holds), [])
         self.assertTrue(judge.verdict(holds | {"faults": [alive | {"alive_s": None}]}))
-        for worse in ((9 + judge.MOST_DESCRIPTORS + 1, 50.0), (9, 51.0 + judge.MOST_MB)):
-            leaks = [{"name": "daemon", "samples": [(9, 50.0)] * 6 + [worse]}]
+        once = [{"name": "daemon", "samples": [(9, 50.0)] * 3 + [(9, 51.0 + judge.MOST_MB)] * 3}]
+        self.assertEqual(judge.verdict(holds | {"processes": once}), [])
+        for end in ([(9 + judge.MOST_DESCRIPTORS + 1, 50.0)], [(9, 50.0 + step * judge.MOST_MB / 8) for step in range(11)]):
+            leaks = [{"name": "daemon", "samples": [(9, 50.0)] * 6 + end}]
             self.assertIn("leak", judge.verdict(holds | {"processes": leaks})[0])
         self.assertTrue(judge.verdict(holds | {"judged": 0}))
         self.assertTrue(judge.verdict(holds | {"failures": ["a daemon ended with status 1"]}))

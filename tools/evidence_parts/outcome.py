@@ -10,13 +10,17 @@ def git(root, *command):
     return subprocess.run(["git", *command], cwd=root, capture_output=True, text=True, check=False).stdout.strip()
 
 
-def write(root, name, outcome, faults, **more):
-    """`outcome`: a line for a person. `faults`: what speaks against the commit, a line each. `commit`: where it is not the present one."""
+def tree(root):
+    """The commit that is checked out, and whether anything was changed beside it. A long run asks for it when it begins."""
+    return {"commit": git(root, "rev-parse", "HEAD"),
+            "is_changed": git(root, "status", "--porcelain", "--untracked-files=no") != ""}
+
+
+def write(root, name, outcome, faults, began, **more):
+    """`outcome`: a line for a person. `faults`: what speaks against the commit, a line each. `began`: tree() at the begin."""
     file = root / "build" / name / "outcome.json"
     file.parent.mkdir(parents=True, exist_ok=True)
-    is_changed = git(root, "status", "--porcelain", "--untracked-files=no") != ""
-    file.write_text(json.dumps({"commit": git(root, "rev-parse", "HEAD"), "is_changed": is_changed, "outcome": outcome,
-                                "faults": faults, **more}, indent=1) + "\n")
+    file.write_text(json.dumps({**began, "outcome": outcome, "faults": faults, **more}, indent=1) + "\n")
 
 
 def read(root, name):
@@ -25,7 +29,7 @@ def read(root, name):
     if not file.exists():
         return {"outcome": f"not run ({LONG_RUNS[name]})", "faults": []}
     found = json.loads(file.read_text())
-    if found["commit"] == git(root, "rev-parse", "HEAD") and not found["is_changed"]:
+    if found["commit"] == tree(root)["commit"] and not found["is_changed"]:
         return found
     where = found["commit"][:12] + (", changed" if found["is_changed"] else "")
     return {"outcome": f"not run on this commit; on {where} it was: {found['outcome']}", "faults": []}
