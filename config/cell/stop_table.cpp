@@ -1,6 +1,7 @@
 #include "config/cell/stop_table.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <charconv>

@@ -1,6 +1,7 @@
 #include "config/moveit/object_entry.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <bit>

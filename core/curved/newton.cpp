@@ -39,7 +39,7 @@ inline HWY_NOINLINE Vec4 start(const Side& a, const Side& b, const RelativePose4
 HWY_INLINE void conclude(const ConvexBody& a, const ConvexBody& b, const RelativePose4& a_from_b,
                          const NewtonEnd& end, double size, CurvedTrackingState& state,
                          DistanceResult& r) {
-  CurvedConclusion found;
+  CurvedConclusion found{};
   found.lower = end.lower;
   found.upper = end.upper;
   found.error = rounding_error({&a, a.bounding_radius}, {&b, b.bounding_radius}, place_of(a_from_b),

@@ -168,7 +168,7 @@ HWY_INLINE bool segment_and_cone_distance(const ConvexBody& a, const ConvexBody&
   const Section gap{nearest.p.across - closest.across, nearest.p.height - closest.height};
   const double offset = a_from_b.translation_length;
   const double size = size_of(a, b, offset);
-  CurvedConclusion found;
+  CurvedConclusion found{};
   found.lower = nearest.along_normal(discs) - behind;
   found.upper = std::sqrt(dot(gap, gap));
   const bool known =

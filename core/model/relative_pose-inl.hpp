@@ -16,6 +16,7 @@
 #include "core/model/bad_pose.hpp"
 #include "core/model/error_bounds.hpp"
 #include "core/model/query.hpp"
+#include "core/model/special_members.hpp"
 #include "core/numerics/error_constants.hpp"
 #include "core/numerics/vec4-inl.hpp"
 #include "core/pose.hpp"
@@ -216,7 +217,7 @@ HWY_INLINE PlacePrecision place_of(const RelativePose4& r) {
 }
 
 HWY_INLINE RelativePose pose_of(const RelativePose4& r) {
-  RelativePose pose;
+  RelativePose pose{};
   for (int i = 0; i < 3; ++i) {
     pose.rotation(i, i) = lane(r.rotation.main, i);
     pose.rotation(i, (i + 1) % 3) = lane(r.rotation.next, i);

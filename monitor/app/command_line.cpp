@@ -38,59 +38,120 @@ std::string word_for(const CLI::Option& option) {
   return option.get_type_size() == 0 ? name : name + " " + option.get_type_name();
 }
 
-// The text of --help: what a command needs stands before what it can take. Differs from CLI11's
-// formatter in three respects. The usage line names required arguments before "[OPTIONS]".
-// Arguments, groups of options that require exactly one of them, and subcommands stand before
-// options. In each list, required options come first, --help and --version last.
-class HelpFormatter : public CLI::Formatter {
+// Words beside the names of an option: its type, default and what else CLI11 knows.
+std::string words_beside(const CLI::Option& option) {
+  if (!option.get_option_text().empty()) return " " + option.get_option_text();
+  std::string words;
+  if (option.get_type_size() != 0) {
+    if (!option.get_type_name().empty()) words += " " + option.get_type_name();
+    if (!option.get_default_str().empty()) words += "=" + option.get_default_str();
+    if (option.get_expected_max() == CLI::detail::expected_max_vector_size) {
+      words += " ...";
+    } else if (option.get_expected_min() > 1) {
+      words += " x " + std::to_string(option.get_expected());
+    }
+    if (option.get_required()) words += " REQUIRED";
+  }
+  if (!option.get_needs().empty()) words += " Needs:";
+  for (const CLI::Option* other : option.get_needs()) words += " " + other->get_name();
+  if (!option.get_excludes().empty()) words += " Excludes:";
+  for (const CLI::Option* other : option.get_excludes()) words += " " + other->get_name();
+  return words;
+}
+
+// "[FILES...]".
+std::string usage_of(const CLI::Option& positional) {
+  std::string name = positional.get_name(true, false);
+  if (positional.get_expected_max() >= CLI::detail::expected_max_vector_size) {
+    name += "...";
+  } else if (positional.get_expected_max() > 1) {
+    name += "(" + std::to_string(positional.get_expected()) + "x)";
+  }
+  return positional.get_required() ? name : "[" + name + "]";
+}
+
+// A description stands beside its name, or on the next line if the name is too long.
+std::string entry(const std::string& name, const std::string& description) {
+  constexpr std::size_t kColumn = 30;
+  std::string text = "  " + name;
+  if (description.empty()) return text + "\n";
+  text += text.size() < kColumn ? std::string(kColumn - text.size(), ' ')
+                                : "\n" + std::string(kColumn, ' ');
+  for (const char c : description) {
+    text += c;
+    if (c == '\n') text.append(kColumn, ' ');
+  }
+  return text + "\n";
+}
+
+std::string entries(const std::vector<const CLI::Option*>& options) {
+  std::string text;
+  for (const CLI::Option* option : options) {
+    const bool is_positional = option->get_positional();
+    text += entry(option->get_name(is_positional, !is_positional) + words_beside(*option),
+                  option->get_description());
+  }
+  return text;
+}
+
+std::string usage(const CLI::App& app, const std::string& name) {
+  std::string text = "Usage: " + name;
+  for (const CLI::App* part : alternatives_of(app)) {
+    std::string words;
+    for (const CLI::Option* option : options_of(*part)) {
+      words += (words.empty() ? "" : " | ") + word_for(*option);
+    }
+    text += " (" + words + ")";
+  }
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->get_positional()) text += " " + usage_of(*option);
+  }
+  for (const CLI::Option* option : app.get_options()) {
+    if (option->nonpositional() && option->get_required()) text += " " + word_for(*option);
+  }
+  const bool has_subcommands = !named_subcommands_of(app).empty();
+  return text + (has_subcommands ? " SUBCOMMAND ...\n" : " [OPTIONS]\n");
+}
+
+// The text of --help, the same for every version of CLI11: what a command needs stands before what
+// it can take. The usage line names required arguments before "[OPTIONS]". Groups of options that
+// require exactly one of them, arguments and subcommands stand before options. In each list,
+// required options come first, --help and --version last.
+class HelpFormatter : public CLI::FormatterBase {
  public:
-  std::string make_usage(const CLI::App* app, std::string name) const override {
-    std::string usage = "Usage: " + name;
-    for (const CLI::App* part : alternatives_of(*app)) {
-      std::string words;
-      for (const CLI::Option* option : options_of(*part)) {
-        words += (words.empty() ? "" : " | ") + word_for(*option);
-      }
-      usage += " (" + words + ")";
-    }
-    for (const CLI::Option* option : app->get_options()) {
-      if (option->get_positional()) usage += " " + make_option_usage(option);
-    }
-    for (const CLI::Option* option : app->get_options()) {
-      if (option->nonpositional() && option->get_required()) usage += " " + word_for(*option);
-    }
-    const bool has_subcommands = !named_subcommands_of(*app).empty();
-    return usage + (has_subcommands ? " SUBCOMMAND ...\n" : " [OPTIONS]\n");
+  std::string make_help(const CLI::App* app, std::string name, CLI::AppFormatMode) const override {
+    std::string text = app->get_description();
+    text += (text.empty() ? "" : "\n") + usage(*app, name);
+    for (const CLI::App* part : alternatives_of(*app))
+      text += "\n" + part->get_description() + ":\n" + entries(options_of(*part));
+    const auto positionals =
+        app->get_options([](const CLI::Option* option) { return option->get_positional(); });
+    if (!positionals.empty()) text += "\nPositionals:\n" + entries(positionals);
+    const std::vector<const CLI::App*> parts = named_subcommands_of(*app);
+    if (!parts.empty()) text += "\nSubcommands (each has its own --help):\n";
+    for (const CLI::App* part : parts) text += entry(part->get_name(), part->get_description());
+    return text + groups(*app) + "\n" + (app->get_footer().empty() ? "" : app->get_footer() + "\n");
   }
 
-  std::string make_group(std::string group, bool is_positional,
-                         std::vector<const CLI::Option*> options) const override {
+ private:
+  static std::string groups(const CLI::App& app) {
     const auto rank = [](const CLI::Option* option) {
       if (option->get_required()) return 0;
       return option->check_lname("help") || option->check_lname("version") ? 2 : 1;
     };
-    std::ranges::stable_sort(options, {}, rank);
-    return CLI::Formatter::make_group(std::move(group), is_positional, std::move(options));
-  }
-
-  // The alternatives, then positional arguments, then subcommands that have a name.
-  std::string make_positionals(const CLI::App* app) const override {
     std::string text;
-    for (const CLI::App* part : alternatives_of(*app)) {
-      text += "\n" + part->get_description() + ":\n";
-      for (const CLI::Option* option : options_of(*part)) {
-        text += make_option(option, option->get_positional());
-      }
+    for (const std::string& group : app.get_groups()) {
+      auto options = app.get_options([&group](const CLI::Option* option) {
+        return option->get_group() == group && option->nonpositional();
+      });
+      if (group.empty() || options.empty()) continue;
+      std::ranges::stable_sort(options, {}, rank);
+      // CLI11 2.5 has other letters for its own group.
+      text += (text.empty() ? "\n" : "\n\n") + (group == "OPTIONS" ? "Options" : group) + ":\n" +
+              entries(options);
     }
-    text += CLI::Formatter::make_positionals(app);
-    const std::vector<const CLI::App*> parts = named_subcommands_of(*app);
-    if (!parts.empty()) text += "\nSubcommands (each has its own --help):\n";
-    for (const CLI::App* part : parts) text += make_subcommand(part);
     return text;
   }
-
-  // Nothing: make_positionals() has them.
-  std::string make_subcommands(const CLI::App*, CLI::AppFormatMode) const override { return ""; }
 };
 
 void add_packages(Packages& packages, const std::vector<std::string>& texts) {
@@ -134,6 +195,11 @@ void add_option(CLI::App& app, const Option& option) {
   }
 }
 
+// Of "-o,--output".
+std::string long_name(const Option& option) {
+  return option.name.substr(option.name.find(',') + 1);
+}
+
 // Variables are set only by what was given, so a subcommand that was not chosen sets none.
 void build(CLI::App& app, const CommandLine& line) {
   if (!line.one_of.empty()) {
@@ -143,15 +209,28 @@ void build(CLI::App& app, const CommandLine& line) {
   }
   for (const Option& option : line.options) add_option(app, option);
   for (const Option& option : line.options) {
-    const auto name = option.name.substr(option.name.find(',') + 1);
-    for (const auto& other : option.rule.needs) app.get_option(name)->needs(app.get_option(other));
-    for (const auto& other : option.rule.excludes)
-      app.get_option(name)->excludes(app.get_option(other));
+    CLI::Option* const added = app.get_option(long_name(option));
+    for (const auto& other : option.rule.needs) added->needs(app.get_option(other));
+    for (const auto& other : option.rule.excludes) added->excludes(app.get_option(other));
   }
   for (const CommandLine& part : line.subcommands)
     build(*app.add_subcommand(part.name, part.about), part);
   if (!line.subcommands.empty()) app.require_subcommand(1);
   app.footer(line.footer);
+}
+
+// Since version 2.5, CLI11 looks for what is missing before it checks the values that are there.
+std::optional<CLI::ValidationError> wrong_value(const CLI::App& app,
+                                                const std::vector<Option>& options) {
+  for (const Option& option : options) {
+    if (!option.check.fault) continue;
+    const CLI::Option* const given = app.get_option(long_name(option));
+    for (const std::string& text : given->results()) {
+      const std::string fault = option.check.fault(text);
+      if (!fault.empty()) return CLI::ValidationError(given->get_name(), fault);
+    }
+  }
+  return std::nullopt;
 }
 
 // Prints CLI11's message through print().
@@ -178,10 +257,14 @@ std::optional<int> parse(CommandLine& line, int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::RequiredError& error) {
-    // A mistyped option is often why something else is missing.
+    // A mistyped option or value is often why something else is missing.
     const std::vector<std::string> unknown = app.remaining(true);
     if (!unknown.empty()) print(stderr, "{}\n", CLI::ExtrasError("", unknown).what());
-    say(app, error);
+    if (const auto wrong = wrong_value(app, line.options)) {
+      say(app, *wrong);
+    } else {
+      say(app, error);
+    }
     return kUsage;
   } catch (const CLI::ParseError& error) {
     return say(app, error) == 0 ? kOk : kUsage;

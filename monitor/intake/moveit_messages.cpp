@@ -1,6 +1,7 @@
 #include "monitor/intake/moveit_messages.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <array>
 #include <utility>

@@ -22,7 +22,8 @@ std::optional<Decoder::Wanted> TrackedBodies::wants(const TopicName& topic) {
 }
 
 std::vector<NamedTopic> TrackedBodies::named() const {
-  return is_used() ? std::vector<NamedTopic>{{topic_, &kRosIdsList}} : std::vector<NamedTopic>();
+  if (!is_used()) return {};
+  return {NamedTopic{topic_, &kRosIdsList}};
 }
 
 // Each tracker stands in for one other, whose last list is older than its own first one.

@@ -19,22 +19,6 @@ constexpr double kSmallDisplacement = 1.0 / 64.0;
 // open.
 constexpr double kSmallShare = 1.0 / 4096.0;
 
-PairStatus status_of(DistanceStatus status) noexcept {
-  switch (status) {
-    case DistanceStatus::kConverged:
-      return PairStatus::kConverged;
-    case DistanceStatus::kTouching:
-      return PairStatus::kTouching;
-    case DistanceStatus::kOverlapping:
-      return PairStatus::kOverlapping;
-    case DistanceStatus::kIterationLimit:
-    case DistanceStatus::kDepthNotAsked:
-    case DistanceStatus::kBadPose:
-      break;
-  }
-  return PairStatus::kIterationLimit;
-}
-
 // The part pair with the smallest upper bound; evaluated ones come before all others.
 std::uint32_t closest_part_pair(std::uint32_t pair, const PairTable& table) noexcept {
   std::uint32_t closest = table.first_part_pair(pair);
@@ -219,6 +203,22 @@ PairBounds bounds_by_table(std::uint32_t pair, const TickView& view,
 }
 
 }  // namespace
+
+PairStatus status_of(DistanceStatus status) noexcept {
+  switch (status) {
+    case DistanceStatus::kConverged:
+      return PairStatus::kConverged;
+    case DistanceStatus::kTouching:
+      return PairStatus::kTouching;
+    case DistanceStatus::kOverlapping:
+      return PairStatus::kOverlapping;
+    case DistanceStatus::kIterationLimit:
+    case DistanceStatus::kDepthNotAsked:
+    case DistanceStatus::kBadPose:
+      break;
+  }
+  return PairStatus::kIterationLimit;
+}
 
 PairReport unknown_report() noexcept {
   PairReport report;

@@ -25,6 +25,9 @@ enum class SweptPrecision : std::uint8_t {
   kByRelativeDisplacement,  // and by that of one object relative to the other
 };
 
+// The status of a pair in the tick that evaluated it.
+[[nodiscard]] PairStatus status_of(DistanceStatus status) noexcept;
+
 // The bounds of any pair, whether it was brought up to date in this tick or not.
 [[nodiscard]] PairBounds bounds_of(std::uint32_t pair, const TickView& view,
                                    SweptPrecision precision) noexcept;

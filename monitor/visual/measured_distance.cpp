@@ -6,26 +6,10 @@
 #include "core/distance.hpp"
 #include "monitor/bodies/bounding_sphere.hpp"
 #include "monitor/pairs/evaluate_pair.hpp"
+#include "monitor/pairs/pair_bounds.hpp"
 
 namespace clearance {
 namespace {
-
-PairStatus status_of(DistanceStatus status) {
-  switch (status) {
-    case DistanceStatus::kConverged:
-      return PairStatus::kConverged;
-    case DistanceStatus::kTouching:
-      return PairStatus::kTouching;
-    case DistanceStatus::kOverlapping:
-      return PairStatus::kOverlapping;
-    case DistanceStatus::kIterationLimit:
-    case DistanceStatus::kDepthNotAsked:
-      return PairStatus::kIterationLimit;
-    case DistanceStatus::kBadPose:
-      break;
-  }
-  return PairStatus::kUnknown;
-}
 
 // The distance of two parts in `nearest`, if it is less than what is there. No stated error changes
 // it by more than `model_error`, m.

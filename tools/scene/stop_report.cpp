@@ -1,6 +1,7 @@
 #include "tools/scene/stop_report.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <cmath>
 #include <iterator>

@@ -2,17 +2,10 @@
 
 #include <sys/resource.h>
 
-#include <boost/process/args.hpp>
-#include <boost/process/child.hpp>
-#include <boost/process/exe.hpp>
-#include <boost/process/extend.hpp>
-#include <boost/process/io.hpp>
-#include <boost/process/pipe.hpp>
+#include "tools/shared/child_process.hpp"
 
 namespace clearance {
 namespace {
-
-namespace bp = boost::process;
 
 constexpr rlim_t kMostFileBytes = rlim_t{64} << 20U;
 constexpr std::size_t kMostSaid = 2000;

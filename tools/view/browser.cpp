@@ -8,21 +8,14 @@
 #include <unistd.h>
 
 #include <array>
-#include <boost/process/args.hpp>
-#include <boost/process/child.hpp>
-#include <boost/process/exe.hpp>
-#include <boost/process/extend.hpp>
-#include <boost/process/io.hpp>
-#include <boost/process/pipe.hpp>
-#include <boost/process/posix.hpp>
 #include <fstream>
 #include <stdexcept>
 #include <vector>
 
+#include "tools/shared/child_process.hpp"
+
 namespace clearance::view {
 namespace {
-
-namespace bp = boost::process;
 
 // A first page on a busy machine without a graphics card takes half a minute.
 constexpr auto kBrowserPatience = std::chrono::seconds(180);

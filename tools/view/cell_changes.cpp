@@ -1,6 +1,7 @@
 #include "tools/view/cell_changes.hpp"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <map>

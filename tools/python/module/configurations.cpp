@@ -15,25 +15,13 @@
 #include "monitor/interface/gradient_rows.hpp"
 #include "monitor/interface/report.hpp"
 #include "monitor/pairs/evaluate_pair.hpp"
+#include "monitor/pairs/pair_bounds.hpp"
 
 namespace clearance::python {
 namespace {
 
 constexpr double kUnknown = std::numeric_limits<double>::quiet_NaN();
 constexpr std::uint32_t kMostVariables = 7;  // of a joint
-
-PairStatus status_of(DistanceStatus status) noexcept {
-  switch (status) {
-    case DistanceStatus::kConverged:
-      return PairStatus::kConverged;
-    case DistanceStatus::kTouching:
-      return PairStatus::kTouching;
-    case DistanceStatus::kOverlapping:
-      return PairStatus::kOverlapping;
-    default:
-      return PairStatus::kIterationLimit;
-  }
-}
 
 void store(double* rows, std::size_t index, const Vec3& v) noexcept {
   if (rows != nullptr) std::copy_n(v.data(), 3, rows + 3 * index);
