@@ -22,11 +22,11 @@ list(REMOVE_DUPLICATES suites)
 foreach(suite ${suites})
   list(LENGTH cases_${suite} count)
   if(suite MATCHES "^(Kinds/LyingInputs|UnknownPayloads|SilentWords|SecondWitness|RelayedCommands|DaemonJoints|CameraFaults|Watch)$")
-    set(count 500) # The longest begin first.
+    set(count 500) # The longest begin before most others.
   endif()
   set(weight "")
-  # No cycle may be missing between partners, so no more than one suite computes beside them. They begin before all others:
-  # once these run, three of the five places are never free at once.
+  # No cycle may be missing between partners, so no more than one suite computes beside them. They begin early: once the
+  # other suites run, three of the five places are never free at once.
   if(suite MATCHES "Partners$")
     set(weight "PROCESSORS 3")
     set(count 2000)

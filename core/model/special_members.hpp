@@ -1,6 +1,6 @@
 // Assignments that the compiler writes, used here first. GCC 16 compiles such a function for the
 // processor of the code that uses it first. First used in code of AVX2, it would be called on
-// processors without.
+// processors without it.
 #pragma once
 
 #include <utility>

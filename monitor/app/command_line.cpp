@@ -38,7 +38,7 @@ std::string word_for(const CLI::Option& option) {
   return option.get_type_size() == 0 ? name : name + " " + option.get_type_name();
 }
 
-// Words beside the names of an option: its type, default and what else CLI11 knows.
+// Words beside the names of an option: its type, its default, what it needs and excludes.
 std::string words_beside(const CLI::Option& option) {
   if (!option.get_option_text().empty()) return " " + option.get_option_text();
   std::string words;
@@ -219,16 +219,22 @@ void build(CLI::App& app, const CommandLine& line) {
   app.footer(line.footer);
 }
 
-// Since version 2.5, CLI11 looks for what is missing before it checks the values that are there.
-std::optional<CLI::ValidationError> wrong_value(const CLI::App& app,
-                                                const std::vector<Option>& options) {
-  for (const Option& option : options) {
-    if (!option.check.fault) continue;
-    const CLI::Option* const given = app.get_option(long_name(option));
-    for (const std::string& text : given->results()) {
-      const std::string fault = option.check.fault(text);
-      if (!fault.empty()) return CLI::ValidationError(given->get_name(), fault);
+// The first value that its option's check refuses, of a command and of its chosen subcommands.
+// Since version 2.5, CLI11 looks for what is missing before it checks what is there.
+std::optional<CLI::ValidationError> wrong_value(const CLI::App& app, const CommandLine& line) {
+  for (const std::vector<Option>* options : {&line.one_of, &line.options}) {
+    for (const Option& option : *options) {
+      if (!option.check.fault) continue;
+      const CLI::Option* const given = app.get_option(long_name(option));
+      for (const std::string& text : given->results()) {
+        const std::string fault = option.check.fault(text);
+        if (!fault.empty()) return CLI::ValidationError(given->get_name(), fault);
+      }
     }
+  }
+  for (const CommandLine& part : line.subcommands) {
+    if (!app.got_subcommand(part.name)) continue;
+    if (auto wrong = wrong_value(*app.get_subcommand(part.name), part)) return wrong;
   }
   return std::nullopt;
 }
@@ -257,10 +263,11 @@ std::optional<int> parse(CommandLine& line, int argc, char** argv) {
   try {
     app.parse(argc, argv);
   } catch (const CLI::RequiredError& error) {
-    // A mistyped option or value is often why something else is missing.
+    // An option that there is not, or a value that was meant for another one, is often why
+    // something is missing.
     const std::vector<std::string> unknown = app.remaining(true);
     if (!unknown.empty()) print(stderr, "{}\n", CLI::ExtrasError("", unknown).what());
-    if (const auto wrong = wrong_value(app, line.options)) {
+    if (const auto wrong = wrong_value(app, line)) {
       say(app, *wrong);
     } else {
       say(app, error);

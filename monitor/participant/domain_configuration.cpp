@@ -159,7 +159,8 @@ std::string who_reaches(const DdsOptions& options) {
   const std::string name = interface_of(options).name;
   if (name == "default" && options.peers.empty()) {
     return "every program without a configuration reaches it, and ROS 2 nodes of this machine on "
-           "rmw_cyclonedds or rmw_fastrtps with ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST";
+           "rmw_cyclonedds or rmw_fastrtps with ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST; those of "
+           "Humble on rmw_cyclonedds with ROS_LOCALHOST_ONLY=1 need --interface ros here";
   }
   if (name != "ros") return "";
   switch (ros_discovery().range) {
@@ -168,7 +169,8 @@ std::string who_reaches(const DdsOptions& options) {
     case RosRange::kLocalhost:
       return "programs of this machine reach it with ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST, with "
              "ROS_LOCALHOST_ONLY=1 or with --interface lo; of ROS 2 nodes without these, those on "
-             "rmw_fastrtps do, and those on rmw_cyclonedds do not";
+             "rmw_fastrtps do, and those on rmw_cyclonedds need "
+             "ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET here";
     case RosRange::kSubnet:
       return "every program without a configuration reaches it, and every ROS 2 node of this "
              "machine on rmw_cyclonedds or rmw_fastrtps unless it has "

@@ -5,6 +5,7 @@
 #include <iterator>
 #include <utility>
 
+#include "monitor/interface/log_line.hpp"
 #include "monitor/interface/pair_name.hpp"
 #include "monitor/replay/sensor_notes.hpp"
 
@@ -301,23 +302,24 @@ void ReplayRun::fail(std::uint64_t cycle, std::int64_t now_ns, const std::string
 // Notes the totals of all that was left out, after the last tick.
 void ReplayRun::note_counts() {
   std::ranges::copy(feed_.notes(options_.compare.has_value()), std::back_inserter(result_.notes));
-  const auto note_count = [this](std::uint64_t count, const std::string& what) {
-    if (count > 0) note("{} {}", count, what);
+  const auto note_count = [this](std::uint64_t count, std::string_view one, std::string_view more,
+                                 std::string_view what) {
+    if (count > 0) note("{} {}", counted(count, one, more), what);
   };
-  note_count(changes_left_out_,
-             "changes of the recorded cell were not followed: this is another cell, and its bodies "
-             "stay as it has them");
-  note_count(loop_.of_other_scenes(), "batches were made for another scene and left out");
-  note_count(
-      not_comparable_,
-      "ticks rest on poses, frames or a partner's state that this replay cannot have: they were "
-      "not compared");
+  note_count(changes_left_out_, "change of the recorded cell was",
+             "changes of the recorded cell were",
+             "not followed: this is another cell, and its bodies stay as it has them");
+  note_count(loop_.of_other_scenes(), "batch was", "batches were",
+             "made for another scene and left out");
+  note_count(not_comparable_, "tick was", "ticks were",
+             "not compared: this replay cannot have the poses, frames or partner's state in use");
   if (const Sensors* const sensors = loop_.sensors())
     std::ranges::copy(sensor_notes(*sensors, loop_.cell().scene),
                       std::back_inserter(result_.notes));
   for (std::size_t cause = 0; cause < kRejects; ++cause) {
-    note_count(result_.rejected[cause], std::string("poses or positions of joints were refused: ") +
-                                            name(static_cast<Reject>(cause)));
+    note_count(result_.rejected[cause], "pose or position of a joint was",
+               "poses or positions of joints were",
+               std::string("refused: ") + name(static_cast<Reject>(cause)));
   }
   const bool is_ahead = result_.rejected[static_cast<std::size_t>(Reject::kFuture)] > 0;
   if (is_ahead && feed_.log() != nullptr && !loop_.cell().ros.use_sim_time)

@@ -11,6 +11,7 @@
 
 #include "monitor/inputs/elapsed.hpp"
 #include "monitor/intake/scene_keeper.hpp"
+#include "monitor/interface/log_line.hpp"
 
 namespace clearance {
 namespace {
@@ -213,27 +214,26 @@ void TickFeed::forget_unused(std::int64_t log_ns) {
 
 std::vector<std::string> TickFeed::notes(bool compared) const {
   std::vector<std::string> notes;
-  const auto note = [&notes](std::uint64_t count, const std::string& what) {
-    if (count > 0) notes.push_back(fmt::format("{} {}", count, what));
+  const auto note = [&notes](std::uint64_t count, std::string_view one, std::string_view more,
+                             std::string_view what) {
+    if (count > 0) notes.push_back(fmt::format("{} {}", counted(count, one, more), what));
   };
-  note(not_in_the_file_, "batches that a tick used are not in the recording");
-  note(run_ ? run_->of_others() : 0,
-       "reports are of a daemon that ran beside the one that is replayed, and were left out");
-  note(of_other_scenes_, "batches were made for a scene that the recording does not name");
-  note(silences_,
-       "pauses were longer than 20 s: after 10 s, ticks were left out until something came");
-  note(undecodable_ + (run_ ? run_->undecodable() : 0),
-       "messages do not decode as what their channel says and were left out");
+  note(not_in_the_file_, "batch that a tick used is", "batches that a tick used are",
+       "not in the recording");
+  note(run_ ? run_->of_others() : 0, "report is", "reports are",
+       "of a daemon that ran beside the one that is replayed: left out");
+  note(of_other_scenes_, "batch was", "batches were",
+       "made for a scene that the recording does not name");
+  note(silences_, "pause was", "pauses were",
+       "longer than 20 s: after 10 s, ticks were left out until something came");
+  note(undecodable_ + (run_ ? run_->undecodable() : 0), "message is", "messages are",
+       "not what the channel says: left out");
   if (!compared || !run_) return notes;
-  note(run_->all_gradients().unwanted(),
-       "messages of gradients were not compared: the cell asks for none");
-  const std::uint64_t unmatched =
-      run_->separations().unmatched() + run_->all_gradients().unmatched();
-  if (unmatched == 1) {
-    notes.push_back("1 message of gradients or separation belongs to no report");
-  } else {
-    note(unmatched, "messages of gradients or separation belong to no report");
-  }
+  note(run_->all_gradients().unwanted(), "message of gradients was", "messages of gradients were",
+       "not compared: the cell asks for none");
+  note(run_->separations().unmatched() + run_->all_gradients().unmatched(),
+       "message of gradients or separation belongs", "messages of gradients or separation belong",
+       "to no report");
   if (const auto& fields = run_->reader().not_recorded(); !fields.empty()) {
     notes.push_back(
         fmt::format("the recording does not have these fields, which were not compared: {}",

@@ -90,7 +90,9 @@ class Evidence(unittest.TestCase):
             began = outcome.tree(root)
             outcome.write(root, "soak", "9 faults", ["a leak"], began, rooms={"core": 1})
             self.assertEqual([outcome.read(root, "soak")[key] for key in ("outcome", "faults", "rooms")], ["9 faults", ["a leak"], {"core": 1}])
+            self.assertEqual(outcome.tree_since(root, began), began)
             commit("two")
+            self.assertTrue(outcome.tree_since(root, began)["is_changed"])
             outcome.write(root, "soak", "9 faults", ["a leak"], began)
             first = began["commit"][:12]
             self.assertEqual(outcome.read(root, "soak"),

@@ -107,7 +107,7 @@ class Soak(unittest.TestCase):
         self.assertTrue(judge.verdict(holds | {"faults": [alive | {"alive_s": None}]}))
         once = [{"name": "daemon", "samples": [(9, 50.0)] * 3 + [(9, 51.0 + judge.MOST_MB)] * 3}]
         self.assertEqual(judge.verdict(holds | {"processes": once}), [])
-        for end in ([(9 + judge.MOST_DESCRIPTORS + 1, 50.0)], [(9, 50.0 + step * judge.MOST_MB / 8) for step in range(11)]):
+        for end in ([(9 + judge.MOST_DESCRIPTORS + 1, 50.0)], [(9, 51.0 + judge.MOST_AT_ONCE_MB + judge.MOST_MB)], [(9, 50.0 + step * judge.MOST_MB / 8) for step in range(11)]):
             leaks = [{"name": "daemon", "samples": [(9, 50.0)] * 6 + end}]
             self.assertIn("leak", judge.verdict(holds | {"processes": leaks})[0])
         self.assertTrue(judge.verdict(holds | {"judged": 0}))

@@ -11,13 +11,18 @@ def git(root, *command):
 
 
 def tree(root):
-    """The commit that is checked out, and whether anything was changed beside it. A long run asks for it when it begins."""
+    """The commit that is checked out, and whether files differ from it. A long run asks for it when it begins."""
     return {"commit": git(root, "rev-parse", "HEAD"),
             "is_changed": git(root, "status", "--porcelain", "--untracked-files=no") != ""}
 
 
+def tree_since(root, began):
+    """The tree() of a run that has read sources since it began: changed, if they are others by now."""
+    return {**began, "is_changed": began["is_changed"] or tree(root) != began}
+
+
 def write(root, name, outcome, faults, began, **more):
-    """`outcome`: a line for a person. `faults`: what speaks against the commit, a line each. `began`: tree() at the begin."""
+    """`outcome`: a line for a person. `faults`: what speaks against the commit, a line each. `began`: tree() at the beginning."""
     file = root / "build" / name / "outcome.json"
     file.parent.mkdir(parents=True, exist_ok=True)
     file.write_text(json.dumps({**began, "outcome": outcome, "faults": faults, **more}, indent=1) + "\n")

@@ -6,7 +6,8 @@ import numpy as np
 ROUNDING = 1e-9  # m
 SPREAD_SPEED = 20.0  # m/s, faster than any point of these robots: links may rest on positions of different ages
 STALE, UNKNOWN = 5, 6
-MOST_DESCRIPTORS, MOST_MB = 4, 32.0  # that a daemon may have more of at the end than at the beginning
+MOST_DESCRIPTORS, MOST_MB = 4, 32.0  # that a daemon may have more of at the end than at the beginning; see growth()
+MOST_AT_ONCE_MB = 64.0  # of the largest step, which is left out
 
 Allowance = collections.namedtuple("Allowance", "source from_ns to_ns error")  # m; a lie that no program can notice earlier
 
@@ -112,12 +113,12 @@ class Judge:
 def growth(samples):
     """What a process has more of at the end than at the beginning: descriptors, and MB of its resident memory.
 
-    The largest step of the memory is left out: once, a daemon reserves for the next cell that it prepares. A leak goes on.
+    The largest step of the memory is left out, up to a limit: some daemons grow once and then no more. A leak goes on.
     """
     if len(samples) < 6:
         return 0, 0.0
     mb = [resident for _, resident in samples]
-    largest = max(0.0, *(after - before for before, after in itertools.pairwise(mb)))
+    largest = min(MOST_AT_ONCE_MB, max(0.0, *(after - before for before, after in itertools.pairwise(mb))))
     return samples[-1][0] - samples[0][0], mb[-1] - mb[0] - largest
 
 

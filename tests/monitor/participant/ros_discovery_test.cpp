@@ -95,6 +95,14 @@ TEST_F(RosDiscoveryTest, OffIsATagThatNoOtherProgramHas) {
   EXPECT_THAT(how_to_reach({.interface = "ros"}, 7), HasSubstr("OFF: no other program reaches it"));
 }
 
+TEST_F(RosDiscoveryTest, TheLineSaysWhatThoseNeedWhoDoNotReachIt) {
+  EXPECT_THAT(how_to_reach({.interface = "default"}, 7),
+              HasSubstr("with ROS_LOCALHOST_ONLY=1 need --interface ros here"));
+  set("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST");
+  EXPECT_THAT(how_to_reach({.interface = "ros"}, 7),
+              HasSubstr("those on rmw_cyclonedds need ROS_AUTOMATIC_DISCOVERY_RANGE=SUBNET here"));
+}
+
 // Cyclone adds up the cards of all settings, and refuses one that is named twice.
 TEST_F(RosDiscoveryTest, LeavesTheCardsToCyclonesOwnVariableIfThatNamesSome) {
   set("CYCLONEDDS_URI",

@@ -192,7 +192,7 @@ TEST_F(BagReplay, ALongPauseCostsTenSecondsOfTicks) {
   const OfflineReplay done = replay("bag.mcap");
   EXPECT_LT(done.ticks, 11'000u);
   EXPECT_GT(done.ticks, 10'000u);
-  EXPECT_THAT(done.notes, Contains(HasSubstr("1 pauses were longer than 20 s")));
+  EXPECT_THAT(done.notes, Contains(HasSubstr("1 pause was longer than 20 s")));
 }
 
 TEST_F(BagReplay, RefusesWhatCannotBeAsked) {

@@ -300,7 +300,7 @@ TEST_F(OfflineReplayTest, TicksWhosePosesWereLostAreNotComparedInWhatIsCertain) 
   EXPECT_TRUE(some.ok()) << some.text();
   EXPECT_LT(some.compared, 200u);
   EXPECT_GT(some.compared, 150u);
-  EXPECT_THAT(some.notes, Contains(HasSubstr("1 batches that a tick used are not in")));
+  EXPECT_THAT(some.notes, Contains(HasSubstr("1 batch that a tick used is not in")));
   rewrite([](std::vector<Kept>& messages) {
     std::erase_if(messages, [](const Kept& m) { return m.kind == TopicKind::kPoses; });
   });
