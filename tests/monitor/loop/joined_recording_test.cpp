@@ -190,7 +190,7 @@ TEST_F(JoinedRecordings, WithAStateOfAnotherBuildAreComparedByTheirBounds) {
   EXPECT_TRUE(bounds.ok()) << failures(bounds);
   EXPECT_GE(bounds.compared, 1u) << "what stands in front of it is compared";
   EXPECT_LT(bounds.compared, bounds.ticks);
-  EXPECT_THAT(bounds.notes, ::testing::Contains(HasSubstr("they were not compared")));
+  EXPECT_THAT(bounds.notes, ::testing::Contains(HasSubstr("ticks were not compared")));
 }
 
 }  // namespace
