@@ -195,7 +195,7 @@ void add_option(CLI::App& app, const Option& option) {
   }
 }
 
-// Of "-o,--output".
+// "--output", of an option that is named "-o,--output".
 std::string long_name(const Option& option) {
   return option.name.substr(option.name.find(',') + 1);
 }
