@@ -185,7 +185,7 @@ class DepthSearch {
   }
 
   DepthCap cap_here(double tolerance) noexcept {
-    const DepthCap cap = depth_cap(pair_, pair_.bounds.normal, depth(), tolerance, ball_, active_);
+    DepthCap cap = depth_cap(pair_, pair_.bounds.normal, depth(), tolerance, ball_, active_);
     found_.supports += cap.supports;
     return cap;
   }
@@ -193,12 +193,12 @@ class DepthSearch {
   // Where a whole cap of a truncated cone touches, the search ends within rounding of its axis.
   // Along the axis itself, all of the cap is the support set.
   DepthCap best_cap(double tolerance) noexcept {
-    const DepthCap cap = cap_here(tolerance);
+    DepthCap cap = cap_here(tolerance);
     if (cap.angle > 0.0 || depth() - cap.lower <= tolerance) return cap;
     const CurvedBounds before = pair_.bounds;
     to_axes();
     if (pair_.bounds.normal == before.normal) return cap;
-    const DepthCap there = cap_here(tolerance);
+    DepthCap there = cap_here(tolerance);
     if (there.angle > 0.0) return there;
     pair_.bounds = before;
     return cap;

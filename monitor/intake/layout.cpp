@@ -14,20 +14,6 @@ constexpr std::uint64_t kMostLookedAt = 4096;
 // Tolerates this many numbers that look like lengths only by chance, in a picture without depth.
 constexpr std::size_t kFewNumbers = 8;
 
-std::size_t size_of(Layout::Number number) noexcept {
-  return number == Layout::Number::kMillimetres16 ? sizeof(std::uint16_t) : sizeof(float);
-}
-
-bool have_overlap(const Layout& layout) noexcept {
-  for (std::size_t i = 0; i < layout.numbers; ++i) {
-    for (std::size_t k = i + 1; k < layout.numbers; ++k) {
-      const std::size_t a = layout.offsets[i], b = layout.offsets[k];
-      if (std::max(a, b) - std::min(a, b) < size_of(layout.number)) return true;
-    }
-  }
-  return false;
-}
-
 template <class Word>
 Word word_at(const std::byte* bytes) noexcept {
   Word word{};
@@ -87,8 +73,7 @@ FrameFault judge(const Layout& layout, std::size_t most) noexcept {
   const std::uint64_t bytes = layout.bytes.size();
   if (bytes < row || (bytes - row) / layout.row_step < layout.rows - 1)
     return FrameFault::kShortData;
-  if (have_overlap(layout) || (layout.rows > 1 && layout.row_step >= 2 * row))
-    return FrameFault::kLayout;
+  if (layout.rows > 1 && layout.row_step >= 2 * row) return FrameFault::kLayout;
   return has_other_byte_order(layout) ? FrameFault::kByteOrder : FrameFault::kNoFault;
 }
 

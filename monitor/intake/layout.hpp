@@ -22,8 +22,8 @@ struct Layout {
 };
 
 // Returns kNoPixels, kTooManyPixels, kStep or kShortData, for rows that are not all there;
-// kLayout for numbers that overlap, and for rows with as much padding as content, which hold wider
-// numbers than the message says; kByteOrder for numbers that make sense in the other order only.
+// kLayout for rows with as much padding as content, which hold wider numbers than the message says;
+// kByteOrder for numbers that make sense in the other order only.
 [[nodiscard]] FrameFault judge(const Layout& layout, std::size_t most) noexcept;
 
 }  // namespace clearance

@@ -27,13 +27,15 @@ constexpr std::array<std::string_view, N> split(std::string_view names) {
   return each;
 }
 
+template <std::size_t I, class Visit, class... Members>
+constexpr void visit_one(Visit& visit, std::string_view name, const Members&... members) {
+  visit(Field{name}, std::get<I>(members)...);
+}
+
 template <class Visit, std::size_t N, std::size_t... I, class... Members>
 constexpr void visit_all(Visit& visit, const std::array<std::string_view, N>& names,
                          std::index_sequence<I...>, const Members&... members) {
-  const auto one = [&]<class At>(At) {
-    visit(Field{names[At()]}, std::get<At::value>(members)...);
-  };
-  (one(std::integral_constant<std::size_t, I>()), ...);
+  (visit_one<I>(visit, names[I], members...), ...);
 }
 
 }  // namespace fields_detail

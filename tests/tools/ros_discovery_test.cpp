@@ -202,14 +202,21 @@ TEST_F(RosDiscoveryNetwork, StaticPeersAreFoundOnAnotherMachine) {
 
 TEST_F(RosDiscoveryNetwork, ClientsReadTheVariablesToo) {
   start({{"ROS_DISTRO", "jazzy"}});
-  const Variables of_node{{"ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET"}};
-  std::optional<ChildProcess> watch;
-  there.run([&] {
-    watch.emplace(test::kWatch,
-                  std::vector<std::string>{"--plain", "--domain", std::to_string(kDomain)},
-                  test::ChildOptions{.environment = of_node});
-  });
-  EXPECT_TRUE(eventually([&] { return watch->wrote("cycle "); })) << watch->output();
+  for (const auto& [machine, variables] :
+       {std::pair(&there, Variables{{"ROS_AUTOMATIC_DISCOVERY_RANGE", "SUBNET"}}),
+        std::pair(&here, Variables{{"ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST"}})}) {
+    std::optional<ChildProcess> watch, record;
+    machine->run([&] {
+      const Arguments of_domain{"--domain", std::to_string(kDomain)};
+      const test::ChildOptions options{.environment = variables};
+      watch.emplace(test::kWatch, test::with(of_domain, {"--plain"}), options);
+      const std::string recording = folder / (variables.front().second + ".mcap");
+      record.emplace(test::kRecord,
+                     test::with(of_domain, {"--seconds", "2", "--output", recording}), options);
+    });
+    EXPECT_TRUE(eventually([&] { return watch->wrote("cycle "); })) << watch->output();
+    EXPECT_EQ(record->wait(), 0) << record->output();
+  }
 }
 
 TEST_F(RosDiscoveryNetwork, TheDefaultInterfaceMeetsNodesOfThisMachineThatUseNoMulticast) {

@@ -55,6 +55,10 @@ TEST_F(OddRobots, ANegativeVelocityLimitIsRefusedUnlessTheCellReplacesIt) {
       "  - {name: walker, prefix: p_, urdf: walker_description/walker.urdf, joints: {hip: "
       "{velocity: 1.25}}}\n";
   EXPECT_EQ(scene(stated, kSelf).variables[0].max_speed, 1.25);
+  std::string aged = stated;
+  aged.replace(aged.find("1.25"), 4, "1.25, age_limit_ms: 9");
+  EXPECT_EQ(scene(aged, kSelf).variables[0].age_limit_ns, 9'000'000);
+  EXPECT_NE(scene(stated, kSelf).variables[0].age_limit_ns, 9'000'000);
   EXPECT_THAT(errors("  - {name: walker, urdf: walker_description/walker.urdf, joints: {hip: "
                      "{age_limit_ms: 9}}}\n",
                      kSelf),

@@ -82,6 +82,32 @@ TEST(Person, MayBeInNoContactWithWhatMoves) {
   }
 }
 
+// A scene of MoveIt, which a program wrote, is no statement about people.
+TEST(Person, StaysWatchedAgainstWhatMovesWhateverAMatrixAllows) {
+  const test::ScratchFolder folder;
+  test::write_text(
+      folder / "s.yaml",
+      "name: s\nallowed_collision_matrix: {entry_names: [p_head_anna, tool, post], "
+      "entry_values: [{enabled: [true, true, true]}, {enabled: [true, true, true]}, "
+      "{enabled: [true, true, true]}]}\nworld: {collision_objects: [{header: {frame_id: "
+      "map}, id: post, primitives: [{type: 2, dimensions: [0.1]}]}]}\n");
+  const Scene scene = scene_of(
+      "name: test\nunits: {length: m, angle: deg}\nros2: {world_frame: map}\n"
+      "scenes: [{file: s.yaml, group: things}]\n"
+      "robots:\n  - {name: anna, person: {stature: 1.7, error: 0.06}, groups: [people]}\n"
+      "objects:\n  - {name: tool, groups: [things], max_speed: 1, sphere: {radius: 0.1}}\n"
+      "pairs:\n  - {between: [people, things]}\n",
+      folder / "cell.yaml");
+  const auto is_watched = [&](const std::string& with) {
+    return std::ranges::any_of(scene.pairs, [&](const ObjectPair& pair) {
+      const std::string &a = scene.objects[pair.first].name, &b = scene.objects[pair.second].name;
+      return (a == "p_head_anna" && b == with) || (b == "p_head_anna" && a == with);
+    });
+  };
+  EXPECT_TRUE(is_watched("tool"));
+  EXPECT_FALSE(is_watched("post")) << "that is fixed, and the matrix allows it";
+}
+
 // Drillis and Contini: the upper arm has 0.186 of the stature, the shank 0.246.
 TEST(Person, HasLimbsOfItsStature) {
   for (const double stature : {1.3, 1.75, 2.1}) {

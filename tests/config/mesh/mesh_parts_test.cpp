@@ -135,6 +135,23 @@ TEST_F(PartsOfMeshes, CountInTheBudgetOfTheCell) {
   EXPECT_THAT(errors_, mistake_at("cell.yaml:4:9", "1", "2"));
 }
 
+TEST_F(PartsOfMeshes, OfAnotherUnitAreOthers) {
+  read(", unit: m");
+  for (const Vec3& anchor : anchors(read(", unit: mm"))) EXPECT_LT(anchor.norm(), 0.01);
+  EXPECT_THAT(told_, Not(HasSubstr("[parts-again]"))) << "those in metres were taken";
+}
+
+TEST_F(PartsOfMeshes, UnderAnotherNameAreNotThoseOfThatName) {
+  read();
+  const auto file = only_file(folder_ / "clearance.parts");
+  std::string other = file.stem();
+  other.back() = other.back() == '0' ? '1' : '0';
+  std::filesystem::copy(file, folder_ / "clearance.parts" / (other + file.extension().string()));
+  const PartsCache cache(folder_ / "");
+  EXPECT_TRUE(cache.find(file.stem()));
+  EXPECT_FALSE(cache.find(other));
+}
+
 TEST_F(PartsOfMeshes, AreMadeAnewWhereTheFileIsDamaged) {
   const Scene first = read();
   const auto file = only_file(folder_ / "clearance.parts");

@@ -4,6 +4,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cmath>
 #include <fstream>
 #include <string>
 #include <variant>
@@ -76,7 +77,9 @@ TEST(PlanningScene, HasItsObjectsShapesAndPlaces) {
   ASSERT_EQ(table.parts.size(), 2u);
   EXPECT_EQ(table.parts[0].name, "box0");
   EXPECT_EQ(table.parts[0].shape.facets.size(), 6u);
+  EXPECT_NEAR(table.parts[0].shape.bounding_radius, 0.5 * Vec3(2, 1, 0.1).norm(), 1e-12);
   EXPECT_EQ(table.parts[1].name, "cylinder1");
+  EXPECT_NEAR(table.parts[1].shape.bounding_radius, std::hypot(0.05, 0.25), 1e-12);
   EXPECT_EQ(table.parts[1].object_from_part.position, Vec3(0.9, 0, -0.35));
   EXPECT_EQ(scene.objects[1].parts[0].shape.radius, 0.25);
   EXPECT_TRUE(scene.notes.empty());
@@ -98,7 +101,10 @@ TEST(PlanningScene, SaysWhatItMakesOfMeshesAndPlanes) {
       "0 0 0\n0 0 0 1\n0 0 0 0\n* ground\n1\nplane\n0 0 1 0.25\n0 0 0\n0 0 0 1\n0 0 0 0\n.\n");
   ASSERT_EQ(scene.objects.size(), 2u);
   EXPECT_EQ(scene.objects[0].parts[0].shape.facets.size(), 4u);
-  EXPECT_TRUE(scene.objects[1].parts[0].shape.is_half_space());
+  const ConvexBody& ground = scene.objects[1].parts[0].shape;
+  ASSERT_TRUE(ground.is_half_space());
+  EXPECT_EQ(ground.facets[0].normal, Vec3::UnitZ());
+  EXPECT_EQ(ground.facets[0].offset, -0.25);
   EXPECT_THAT(scene.notes,
               testing::ElementsAre("meshes are their convex hulls: rock",
                                    "planes are solid on the side that their normals point away "

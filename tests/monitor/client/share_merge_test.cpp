@@ -277,6 +277,9 @@ TEST(ShareMerge, ASeparationOfAShareThatIsNotHeardStopsTheRobot) {
   join_separations(shares.map, shares.views, *joined);
   EXPECT_EQ(joined->zones._buffer[0].scaling, 0.5);
   EXPECT_EQ(joined->zones._buffer[0].remaining, 0.8) << "the least of each figure";
+  of[2]->zones._buffer[0].remaining = 1.2;
+  join_separations(shares.map, shares.views, *joined);
+  EXPECT_EQ(joined->zones._buffer[0].remaining, 0.9) << "in whichever share";
   shares.views[1].separation = nullptr;
   join_separations(shares.map, shares.views, *joined);
   EXPECT_EQ(joined->zones._buffer[0].validity, 0);

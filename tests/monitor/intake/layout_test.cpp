@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "monitor/intake/frame_decoders.hpp"
+#include "monitor/intake/message_form.hpp"
 #include "tests/monitor/intake/camera_texts.hpp"
 
 namespace clearance::layout_test {
@@ -70,6 +71,13 @@ TEST(Layout, OfRowsWithAsMuchPaddingAsContentIsThatOfWiderNumbers) {
   padded.step = 96;
   padded.data.assign(96 * 4, 0);
   EXPECT_EQ(fault_of(padded), Fault::kNoFault) << "to a multiple of 32 bytes";
+}
+
+// A leading slash of a frame's name says nothing.
+TEST(MessageForm, HasOneDigestForANameOfAFrameAndNoneForNoName) {
+  EXPECT_EQ(digest_of_frame("/eye"), digest_of_frame("eye"));
+  EXPECT_NE(digest_of_frame("eye"), digest_of_frame("nose"));
+  for (const char* none : {"", "/"}) EXPECT_EQ(digest_of_frame(none), 0u);
 }
 
 TEST(Layout, OfPointsWhoseNumbersShareBytesIsRefused) {

@@ -64,8 +64,10 @@ TEST(LayoutChange, FillsInWhatAnOlderBuildDidNotRecord) {
                           "ZoneState.swept_clearance"));
   const other_msg_OlderZoneState older{2, 3, "stop", true, false, 4, 5, 6, 0.5};
   Sample<clearance_msg_ZoneState> read;
-  ASSERT_TRUE(
-      CdrDecoder().decode(change.apply(encoded(older, other_msg_OlderZoneState_desc)), read));
+  const auto changed = change.apply(encoded(older, other_msg_OlderZoneState_desc));
+  ASSERT_TRUE(CdrDecoder().decode(changed, read));
+  const std::vector<std::byte> ours = encoded(*read, clearance_msg_ZoneState_desc);
+  EXPECT_TRUE(std::ranges::equal(changed, ours)) << "padding, too, as its header states it";
   EXPECT_EQ(2u, read->zone);
   EXPECT_EQ(3u, read->daemon);
   EXPECT_STREQ("stop", read->name);
@@ -159,6 +161,9 @@ TEST(LayoutChange, RefusesBytesCutOffAnywhereAndLengthsBeyondTheEnd) {
   for (std::size_t length = 0; length < bytes.size(); ++length)
     EXPECT_TRUE(change.apply(std::span(bytes).first(length)).empty()) << length;
   EXPECT_FALSE(change.apply(bytes).empty());
+  std::vector<std::byte> longer = bytes;
+  longer.resize(bytes.size() + 4);
+  EXPECT_TRUE(change.apply(longer).empty()) << "by more than padding";
   bytes[4 + 16 + 3] = std::byte{0x7f};  // the name's length
   EXPECT_TRUE(change.apply(bytes).empty());
 }

@@ -3,6 +3,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstdint>
 #include <cstring>
@@ -11,6 +12,9 @@
 #include <vector>
 
 #include "monitor/files/build_info.hpp"
+#include "monitor/replay/zone_difference.hpp"
+#include "monitor/tick/monitor.hpp"
+#include "monitor/wire/convert.hpp"
 #include "tests/monitor/replay/offline_replay_run.hpp"
 
 namespace clearance::test {
@@ -156,16 +160,18 @@ TEST_F(OfflineReplayTest, BoundsThatOverlapAreTheSameWhereOnlyTheCertainIsCompar
   });
   EXPECT_FALSE(replay({.compare = Comparison::kBits}).ok());
   EXPECT_TRUE(replay({.compare = Comparison::kBounds}).ok());
-  rewrite([](std::vector<Kept>& messages) {
-    Kept& message = messages[report_of(messages, 58)];
-    message = altered<clearance_msg_Distances>(message, [](clearance_msg_Distances& report) {
-      report.minimum.lower += 1e-3;
-      report.minimum.upper += 1e-3;
+  for (const double farther : {1e-3, -2e-3}) {
+    rewrite([farther](std::vector<Kept>& messages) {
+      Kept& message = messages[report_of(messages, 58)];
+      message = altered<clearance_msg_Distances>(message, [&](clearance_msg_Distances& report) {
+        report.minimum.lower += farther;
+        report.minimum.upper += farther;
+      });
     });
-  });
-  const OfflineReplay result = replay({.compare = Comparison::kBounds});
-  ASSERT_EQ(1u, result.failures.size());
-  EXPECT_THAT(result.failures[0].what, HasSubstr("minimum"));
+    const OfflineReplay result = replay({.compare = Comparison::kBounds});
+    ASSERT_EQ(1u, result.failures.size()) << farther;
+    EXPECT_THAT(result.failures[0].what, HasSubstr("minimum"));
+  }
 }
 
 TEST_F(OfflineReplayTest, FindsTheBatchesThatStandFarBehindTheirReport) {
@@ -226,6 +232,42 @@ TEST_F(OfflineReplayTest, ZoneChangeThatIsNotRecordedIsNamed) {
   EXPECT_EQ(cycle, result.failures[0].tick.cycle);
   EXPECT_THAT(result.failures[0].what,
               HasSubstr("zone 'stop': recorded no change, replayed active"));
+}
+
+// A replay counts its ticks from 1, and a recording may have begun later.
+TEST(ZoneDifference, CountsBothCyclesOfAZoneAsTheDaemonDoes) {
+  Scene scene = cell_of({moving("hand", {ball(0.1)}), moving("part", {ball(0.1)})});
+  scene.zones.push_back(zone_over(scene, 0.3, 0.4));
+  Monitor monitor(scene);
+  const std::array samples{sample(0, at(0, 0, 0), kStart), sample(1, at(0.3, 0, 0), kStart)};
+  const Report& report = monitor.tick(samples, kStart);
+  ASSERT_TRUE(report.zones[0].active);
+  ZoneDifference difference(scene);
+  difference.replayed(report, 41);
+  std::vector<clearance_msg_ZoneState> recorded(1);
+  to_wire(scene, report, 0, recorded[0]);
+  recorded[0].cycle += 41;
+  recorded[0].since_cycle += 41;
+  EXPECT_FALSE(difference.first(recorded)) << difference.first(recorded)->what;
+}
+
+TEST(ZoneDifference, TellsTheEarliestOfAllZones) {
+  Scene scene = cell_of({moving("hand", {ball(0.1)}), moving("part", {ball(0.1)})});
+  for (const char* name : {"a", "b"}) {
+    Zone& zone = scene.zones.emplace_back();
+    zone.name = name;
+    zone.pairs = {0};
+  }
+  std::vector<clearance_msg_ZoneState> recorded(2);
+  for (const std::uint32_t zone : {0u, 1u}) {
+    recorded[zone].zone = zone;
+    recorded[zone].cycle = 20 - 10 * zone;
+    recorded[zone].active = true;
+  }
+  const auto found = ZoneDifference(scene).first(recorded);
+  ASSERT_TRUE(found);
+  EXPECT_EQ(found->cycle, 10u);
+  EXPECT_THAT(found->what, HasSubstr("zone 'b': recorded active"));
 }
 
 TEST_F(OfflineReplayTest, DaemonThatWasStartedAnewBeginsWithAMonitorThatKnowsNothing) {

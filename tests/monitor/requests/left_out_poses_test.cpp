@@ -42,6 +42,15 @@ class LeftOutPoses : public test::CommandedCell {
   }
 };
 
+TEST(PosesOfOneBodyInAnother, AreThatBodysOwnPlaceAndTurn) {
+  const Pose a{{1, 2, 3}, Eigen::Quaterniond(0.5, 0.5, 0.5, 0.5)};
+  const Pose b_in_a{{0.1, -0.2, 0.3}, Eigen::Quaterniond(0.6, 0.0, 0.8, 0.0)};
+  const Pose b{a.position + a.orientation * b_in_a.position, a.orientation * b_in_a.orientation};
+  const Pose found = a_from_b(a, b);
+  EXPECT_LT((found.position - b_in_a.position).norm(), 1e-15);
+  EXPECT_LT(found.orientation.angularDistance(b_in_a.orientation), 1e-7);
+}
+
 TEST_F(LeftOutPoses, AreThoseAfterTheChangesBefore) {
   begin();
   expect_part_at({ReplaceObject{kPartElsewhere}, kWhereItIs}, Vec3(0.5, 0.7, 0));

@@ -96,37 +96,63 @@ TEST_F(RefreshQueueTest, APairComesBackWhenBothOfItsObjectsHave) {
   EXPECT_EQ(queue.oldest(table), 1u);
 }
 
-// More pairs than one tick brings back: those that still wait are the oldest.
-TEST(RefreshQueue, RemembersTheAgeOfPairsThatComeBackLater) {
-  constexpr std::uint32_t kPairs = 2'100;
-  std::vector<Object> balls{test::moving("ball", {test::ball(0.1)})};
-  balls.resize(kPairs + 1, test::fixed("post", {test::ball(0.1)}, Pose{}));
-  const Scene scene = test::cell_of(std::move(balls));
-  const std::vector<PosedPart> parts = parts_of(scene);
-  PairTable table(scene, parts);
-  const PairsByObject by_object(scene);
-  std::vector<TrackedObject> objects(kPairs + 1);
-  for (TrackedObject& object : objects) object.input.has_value = true;
-  RefreshQueue queue(kPairs + 1, kPairs);
-  const std::span<const std::uint32_t> of_ball = by_object.pairs_of(0);
-  ASSERT_EQ(of_ball.size(), kPairs);
-  for (std::uint32_t i = 0; i < kPairs; ++i) {
-    table.entries[of_ball[i]].refreshed_cycle = kPairs - i;  // the last one is the oldest
-    queue.move_to_back(of_ball[i]);
+// More pairs of one ball than one tick brings back, all set aside. The last one is the oldest.
+class RefreshQueueOfMany : public testing::Test {
+ protected:
+  static constexpr std::uint32_t kPairs = 2'100;
+
+  RefreshQueueOfMany() {
+    for (TrackedObject& object : objects) object.input.has_value = true;
+    for (std::uint32_t i = 0; i < of_ball.size(); ++i) {
+      table.entries[of_ball[i]].refreshed_cycle = kPairs - i;
+      queue.move_to_back(of_ball[i]);
+    }
+    for (const std::uint32_t pair : of_ball) queue.set_aside(pair, 0, table);
   }
-  for (const std::uint32_t pair : of_ball) queue.set_aside(pair, 0, table);
+  static Scene ball_and_posts() {
+    std::vector<Object> balls{test::moving("ball", {test::ball(0.1)})};
+    balls.resize(kPairs + 1, test::fixed("post", {test::ball(0.1)}, Pose{}));
+    return test::cell_of(std::move(balls));
+  }
+  void bring_back() { queue.bring_back(by_object, TickView{objects, parts, 0, table}); }
+  // Empties the queue, and returns how many pairs it had.
+  std::uint32_t count() {
+    std::uint32_t pairs = 0;
+    for (; queue.stalest() != kNoIndex && pairs <= kPairs; ++pairs)
+      queue.set_aside(queue.stalest(), 0, table);
+    return pairs;
+  }
+
+  Scene scene = ball_and_posts();
+  std::vector<PosedPart> parts = parts_of(scene);
+  PairTable table{scene, parts};
+  PairsByObject by_object{scene};
+  std::span<const std::uint32_t> of_ball = by_object.pairs_of(0);
+  std::vector<TrackedObject> objects = std::vector<TrackedObject>(kPairs + 1);
+  RefreshQueue queue{kPairs + 1, kPairs};
+};
+
+// Pairs that still wait are the oldest.
+TEST_F(RefreshQueueOfMany, RemembersTheAgeOfPairsThatComeBackLater) {
+  ASSERT_EQ(of_ball.size(), kPairs);
   EXPECT_EQ(queue.stalest(), kNoIndex);
   queue.regain(0);
-  queue.bring_back(by_object, TickView{objects, parts, 0, table});
+  bring_back();
   EXPECT_NE(queue.stalest(), kNoIndex);
   EXPECT_EQ(queue.oldest(table), 1u) << "it still waits";
-  queue.bring_back(by_object, TickView{objects, parts, 0, table});
+  bring_back();
   EXPECT_EQ(queue.oldest(table), 1u);
-  std::uint32_t back = 0;
-  for (; queue.stalest() != kNoIndex && back <= kPairs; ++back) {
-    queue.set_aside(queue.stalest(), 0, table);
-  }
-  EXPECT_EQ(back, kPairs);
+  EXPECT_EQ(count(), kPairs);
+}
+
+TEST_F(RefreshQueueOfMany, BringsBackAllPairsOfAnObjectThatIsLostAgainMeanwhile) {
+  queue.regain(0);
+  bring_back();
+  queue.set_aside(of_ball.front(), 0, table);
+  queue.regain(0);
+  bring_back();
+  bring_back();
+  EXPECT_EQ(count(), kPairs);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include "monitor/schedule/broad_phase.hpp"
+#include "monitor/schedule/culling.hpp"
 #include "tests/monitor/tick/small_cells.hpp"
 
 namespace clearance {
@@ -39,6 +40,20 @@ TEST(UntouchedPairs, ThatWaitBoundAllOfThem) {
   const UntouchedPairs untouched{.any = true, .horizon = 0.5, .waiting_lower = 0.25};
   EXPECT_NEAR(untouched.waiting().now, 0.25, 1e-12);
   EXPECT_NEAR(untouched.all().now, 0.25, 1e-12);
+}
+
+TEST(UntouchedPairs, GetTheMotionThatIsNotObservedFromTheTick) {
+  const Scene scene =
+      test::cell_of(std::vector<Object>(2, test::moving("ball", {test::ball(0.1)})));
+  const std::vector<PosedPart> parts = parts_of(scene);
+  const PairTable table(scene, parts);
+  const ZoneLevels levels(scene);
+  const Culling culling(scene, parts, table, levels, {0.0, 0.0}, {}, refresh_share(scene));
+  const UntouchedPairs untouched =
+      culling.untouched({.changed = {}, .most_unobserved = 0.1, .most_displaced = 0.2});
+  EXPECT_FALSE(untouched.any) << "no pair is known yet";
+  EXPECT_EQ(untouched.most_unobserved, 0.1);
+  EXPECT_EQ(untouched.most_displaced, 0.2);
 }
 
 TEST(BroadPhaseInvariant, FailsForACulledPairThatIsNearerThanTheHorizon) {

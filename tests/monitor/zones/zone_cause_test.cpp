@@ -57,6 +57,21 @@ TEST(ZoneCause, IsALateObjectThatMayHaveComeNearUnseen) {
   expect(cell.tick(std::nullopt, 150 * test::kTick), ZoneCause::kLate, 1);
 }
 
+TEST(ZoneCause, IsTheLateObjectThatMayHaveMovedFarther) {
+  for (const std::uint32_t faster : {0u, 1u}) {
+    std::vector<Object> balls{test::moving("left", {test::ball(0.1)}),
+                              test::moving("right", {test::ball(0.1)})};
+    for (std::uint32_t i : {0u, 1u}) balls[i].max_speed = i == faster ? 2.0 : 1.0;
+    Scene scene = test::cell_of(std::move(balls));
+    scene.zones.push_back(test::zone_over(scene, 0.3, 0.4));
+    Monitor monitor(scene);
+    const std::array samples{test::sample(0, test::at(0, 0, 0), test::kStart),
+                             test::sample(1, test::at(0.8, 0, 0), test::kStart)};
+    expect(monitor.tick(samples, test::kStart).zones[0], ZoneCause::kInactive, 0);
+    expect(monitor.tick({}, test::kStart + 150 * test::kTick).zones[0], ZoneCause::kLate, faster);
+  }
+}
+
 TEST(ZoneCause, IsALateObjectWithoutAStatedSpeed) {
   BallAndPost cell(kInfinity);
   cell.tick(0.6);
