@@ -5,6 +5,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "tests" / "mutants"
 PRODUCT = ("core", "config", "monitor")  # the folders that slips are planted into
 HEADER = "tests/mutants/chosen_slip.hpp"
+NUMBERS = 8192  # of slips are below this, as in the header
 
 # `tests`: the folder in tests/ whose tests come first.
 Slip = collections.namedtuple("Slip", "id file tests context original text reason where")
@@ -40,6 +41,8 @@ def read_lists():
             for slip in slips_of_row(match, file, tests, where):
                 if slip.id in slips:
                     errors.append(f"{where}: {slip.id} is taken by {slips[slip.id].where}: choose a number that is free")
+                elif slip.id >= NUMBERS:
+                    errors.append(f"{where}: {slip.id} is too high: choose a number below {NUMBERS}")
                 elif ("{|" in slip.context) != ("|}" in slip.context):
                     errors.append(f"{where}: {{| and |}} mark the expression in its context: one of them is missing")
                 else:
