@@ -192,7 +192,8 @@ void SensorReader::take_all() {
         if (sensor < sensors) frames_.note_built(sensor, content);
       },
       [&](BuiltFrame frame, std::uint64_t content) REQUIRES(mutex_) {
-        if (frame.sensor < sensors) sent_[frame.sensor] = {content, std::move(frame)};
+        const std::uint32_t sensor = frame.sensor;
+        if (sensor < sensors) sent_[sensor] = {content, std::move(frame)};
       });
 }
 

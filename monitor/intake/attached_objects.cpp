@@ -104,7 +104,7 @@ void MessageTranslator::detach(const std::string& id, KnownObject& object,
   forget_exceptions(id);
   object.where = Where::kFixed;
   object.pose = *world;
-  result_.changes.emplace_back(Detach{id, *world});
+  result_.changes.emplace_back(Detach{id, world});
 }
 
 void MessageTranslator::detach(const AttachedCollisionObject& message, const std::string& path) {

@@ -17,7 +17,7 @@ inline const int clearance_chosen_slip = [] {
 // Numbers of slips are below this.
 inline constexpr int kClearanceSlips = 8192;
 
-// One byte a slip, 1 once a program comes to its place: a file that the environment variable
+// One byte a slip, 1 as soon as a program comes to its place: a file that the environment variable
 // CLEARANCE_REACHED names, shared with the programs that this one starts. None without it.
 inline char* const clearance_reached = []() -> char* {
   const char* name = std::getenv("CLEARANCE_REACHED");

@@ -33,7 +33,11 @@ struct Counter {
     "monitor/unreadable.cpp": '#include "monitor/counter.hpp"\n#include "monitor/missing.hpp"\n',
     "tools/lockless.cpp": '#include "tools/missing.hpp"\n',
     "tests/analysis.yaml": """
-clang_tidy: {units: ["core/*"], checks: [bugprone-suspicious-semicolon], left_out: []}
+clang_tidy:
+  rooms:
+    - {units: ["core/*"], checks: [bugprone-suspicious-semicolon]}
+    - {units: ["core/*", "config/*"], checks: [modernize-avoid-c-arrays]}
+  left_out: []
 cppcheck: {enable: warning}
 deviations:
   - {file: core/excused.cpp, check: bugprone-suspicious-semicolon}
@@ -74,10 +78,11 @@ class Analyse(unittest.TestCase):
         status, lines = self.run_of()
         self.assertEqual(lines[:-1], [
             "config/index.cpp:1: Array 'all[3]' accessed at index 3, which is out of bounds. [cppcheck-arrayIndexOutOfBounds]",
+            "config/index.cpp:1: do not declare C-style arrays, use std::array<> instead [modernize-avoid-c-arrays]",
             "core/body.cpp:1: potentially unintended semicolon [bugprone-suspicious-semicolon]",
             *LOCKING,
             "tests/analysis.yaml: the deviation bugprone-suspicious-semicolon of core/idle.cpp covers nothing: remove it"])
-        self.assertRegex(lines[-1], "analyse: 8 findings, 1 covered by 1 deviations, in 2 units of clang-tidy and 2 with locks")
+        self.assertRegex(lines[-1], "analyse: 9 findings, 1 covered by 1 deviations, in 3 units of clang-tidy and 2 with locks")
         self.assertEqual(status, 1)
 
     def test_ReadsOnlyTheUnitsThatAreNamed(self):

@@ -34,6 +34,7 @@ TEST(CellFile, DefaultsAreThoseOfTheReference) {
   EXPECT_EQ(scene.objects[0].age_limit_ns, 20'000'000);
   EXPECT_FALSE(scene.objects[0].fixed);
   EXPECT_TRUE(scene.objects[2].fixed);
+  EXPECT_EQ(scene.objects[2].max_speed, 0.0) << "it is at rest";
   EXPECT_FALSE(scene.objects[2].parts[0].shape.bounded());
 }
 

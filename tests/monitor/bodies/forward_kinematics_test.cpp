@@ -243,20 +243,26 @@ TEST(ForwardKinematics, NoPointOfALateLinkIsFartherThanItMayHaveMoved) {
   EXPECT_GT(tightest, 0.8);
 }
 
+// A planar or floating joint is known if all of its positions are, and is as old as the oldest.
 TEST(ForwardKinematics, OnlyWhatHangsOnAnUnknownJointIsUnknown) {
   Random random(4);
   for (int i = 0; i < 200; ++i) {
-    const Written written = random_robot(random, 8, JointType::kRevolute);
+    const Written written = random_robot(random, 8);
     auto states = random_positions(random, written);
-    for (TrackedVariable& state : states) state.input.has_value = random.chance(0.7);
+    for (TrackedVariable& state : states) state.input.has_value = random.chance(0.9);
     ForwardKinematics kinematics(std::span(&written.robot, 1));
     kinematics.place(states, {});
     std::vector<bool> known = {true};
     std::vector<std::int64_t> oldest = {std::numeric_limits<std::int64_t>::max()};
     for (std::size_t k = 0; k < written.robot.joints.size(); ++k) {
       const RobotJoint& joint = written.robot.joints[k];
-      known.push_back(known[joint.parent] && states[joint.variable].input.has_value);
-      oldest.push_back(std::min(oldest[joint.parent], states[joint.variable].input.stamp_ns));
+      known.push_back(known[joint.parent]);
+      oldest.push_back(oldest[joint.parent]);
+      for (std::uint32_t v = 0; v < variables_of(joint.type); ++v) {
+        const InputRecord& input = states[joint.variable + v].input;
+        known.back() = known.back() && input.has_value;
+        oldest.back() = std::min(oldest.back(), input.stamp_ns);
+      }
       const LinkState& link = kinematics.links(0)[k + 1];
       ASSERT_EQ(link.known, known.back());
       if (!link.known) continue;

@@ -192,6 +192,8 @@ TEST(TickLoop, CountsHowLateItWakesAndHowLongTicksTake) {
   EXPECT_EQ(loop.statistics.tick.max_ns(), 400'000);
   EXPECT_EQ(loop.statistics.tick_second_max_ns, 0) << "begins again once it was handed over";
   EXPECT_EQ(loop.reports.all_statistics.back().tick_second_max_ns, 400'000);
+  EXPECT_EQ(loop.statistics.wakeup_second_max_ns, 0);
+  EXPECT_EQ(loop.reports.all_statistics.back().wakeup_second_max_ns, 20'000);
 }
 
 TEST(TickLoop, HandsVitalsOverOnceASecondAndAtTheEnd) {

@@ -172,6 +172,12 @@ TEST_F(ClocksAndLeaps, ASmallStepBackOfThisMachinesClockLeavesNothingToPlaceACam
   EXPECT_NEAR(frames[0].world_from_sensor.position.x(), 1.4, 1e-9);
 }
 
+TEST_F(ClocksAndLeaps, TransformsFromBeforeThisMachinesClockWasSetBackPlaceNoCamera) {
+  make_with_info("frame: mast");
+  for (int ms = 0; ms <= 1000; ms += 20) add_mast(1.0, kStart + ms * kMs);
+  EXPECT_TRUE(see(kStart + 535 * kMs).empty()) << "the mast may have moved since";
+}
+
 // The frame is from before the step, and the transforms around its stamp are from after it.
 TEST_F(ClocksAndLeaps, AFrameThatWaitsWhenThisMachinesClockIsSetBackIsDropped) {
   make(kImage + ", age_limit_ms: 4000, mount: {frame: mast}", "ros2: {world_frame: map}\n");

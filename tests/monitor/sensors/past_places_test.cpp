@@ -100,6 +100,26 @@ TEST(PastPlaces, OfLinksContainTheMotionWithinTheErrorOfTheStamp) {
 }
 
 // At 100 Hz, a joint with 2 rad/s may leave its place by 10 mrad and be back in time.
+// An object that makes a detour at its full speed is farthest from the line between its poses.
+TEST(PastPlaces, OfObjectsContainWhereTheyMayHaveBeenBetweenTwoPoses) {
+  Object cart = test::moving("cart", {test::ball(0.1)});
+  cart.max_speed = 2.0;
+  const Scene scene = test::cell_of({cart, test::moving("standing", {test::ball(0.1)})});
+  PostureHistory history(scene);
+  for (const int ms : {0, 10, 20, 30, 40}) {
+    for (const std::uint32_t object : {0u, 1u}) {
+      const double x = object == 0 ? 0.001 * ms : 0.0;
+      history.add(test::sample(object, test::at(x, 0, 0), kStart + ms * kMs), kStart + ms * kMs);
+    }
+  }
+  history.place(kStart + 35 * kMs);
+  const PastPose past = history.object(0);
+  ASSERT_TRUE(past.known);
+  const Vec3 detour(0.035, std::sqrt(0.01 * 0.01 - 0.005 * 0.005), 0.0);
+  EXPECT_LE((detour - past.world_from_body.position).norm(), past.error(0.0) + 1e-12);
+  EXPECT_EQ(history.object(1).error(0.0), 0.0) << "it stands";
+}
+
 TEST(PastPlaces, OfALinkAtRestHaveNoErrorOfTheStamp) {
   const Scene scene = test::scara_cell();
   PostureHistory history(scene);
