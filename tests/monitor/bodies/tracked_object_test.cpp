@@ -207,6 +207,22 @@ TEST(TrackedObject, LateObjectsMayHaveMovedAtTheirStatedSpeedSinceTheirStamp) {
   EXPECT_FALSE(state.known());
 }
 
+// `response_left_ns`, as with a pose.
+TEST(TrackedObject, OfALinkWhoseJointsAreOlderThanTheResponseAllowsIsLateAndMayBeAnywhere) {
+  LinkState link;
+  link.known = true;
+  link.stamp_ns = kStart;
+  Object hand = late_after(20 * kTick, kInfinity);
+  hand.pose_error = 1e-6;
+  TrackedObject state;
+  follow(link, hand, kStart + 3 * kTick, state, 3 * kTick);
+  EXPECT_FALSE(state.joints_late);
+  EXPECT_EQ(state.unobserved_by_joints, 0.0);
+  follow(link, hand, kStart + 3 * kTick, state, 3 * kTick - 1);
+  EXPECT_TRUE(state.joints_late);
+  EXPECT_EQ(state.unobserved_by_joints, kInfinity);
+}
+
 TEST(TrackedObject, AgesOfExtremeStampsDoNotOverflow) {
   PoseSample sample = good();
   sample.stamp_ns = kEarliest;

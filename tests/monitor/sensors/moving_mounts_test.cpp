@@ -7,6 +7,7 @@
 #include <optional>
 #include <string>
 
+#include "monitor/sensors/mount_track.hpp"
 #include "tests/monitor/recording/ros_bags.hpp"
 #include "tests/monitor/sensors/small_camera.hpp"
 #include "tests/monitor/sensors/tf_said.hpp"
@@ -178,6 +179,32 @@ TEST_F(MovingMounts, WidenTheirErrorByAStatedSpeedWhereTransformsAreLate) {
   const auto next = settle(kStart + 101 * kMountMs);
   ASSERT_EQ(next.size(), 1u);
   EXPECT_LT(next[0].pose_error, 1e-9);
+}
+
+TEST_F(MovingMounts, WidenTheirErrorByTheErrorOfTheStampWhereTransformsAreLate) {
+  make(kImage + ", stamp_error_ms: 5, mount: {frame: mast, max_speed: 0.5, max_turn_speed: 0.1}",
+       "ros2: {world_frame: map}\n");
+  add(Type::kCameraInfo, InfoText{}.cdr(), kStart);
+  add_mast(0.0, kStart - 50 * kMountMs);
+  add_mast(0.0, kStart);
+  add_image(kStart + 40 * kMountMs);
+  const auto frames = settle(kStart + 60 * kMountMs);
+  ASSERT_EQ(frames.size(), 1u);
+  EXPECT_NEAR(frames[0].pose_error, 0.045 * (0.5 + 0.1 * cell.scene.sensors[0].extent()), 1e-9);
+}
+
+TEST(PathMetric, ComesNoFartherThanItsSpeedsAllowAndToNoOtherCarrier) {
+  const PathMetric metric{.speed = {.shift = 0.5, .turn = 0.1}};
+  const Carrier base{.kind = RobotBase::Kind::kObject, .object = 1};
+  const auto turned = [](double angle) {
+    return Pose{Vec3::Zero(), Eigen::Quaterniond(Eigen::AngleAxisd(angle, Vec3::UnitZ()))};
+  };
+  const CarriedPose from{base, Pose{}};
+  EXPECT_TRUE(metric.stay_within(0.1, from, {base, test::at(0.049, 0, 0)}));
+  EXPECT_FALSE(metric.stay_within(0.1, from, {base, test::at(0.051, 0, 0)}));
+  EXPECT_TRUE(metric.stay_within(0.1, from, {base, turned(0.0099)}));
+  EXPECT_FALSE(metric.stay_within(0.1, from, {base, turned(0.0101)}));
+  EXPECT_FALSE(metric.stay_within(0.1, from, {Carrier{}, Pose{}}));
 }
 
 // Elements may be outside of the ball that is the body of the sensor's object.
