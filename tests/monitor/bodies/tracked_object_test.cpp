@@ -215,6 +215,7 @@ TEST(TrackedObject, OfALinkWhoseJointsAreOlderThanTheResponseAllowsIsLateAndMayB
   Object hand = late_after(20 * kTick, kInfinity);
   hand.pose_error = 1e-6;
   TrackedObject state;
+  state.bounding_radius = 0.1;
   follow(link, hand, kStart + 3 * kTick, state, 3 * kTick);
   EXPECT_FALSE(state.joints_late);
   EXPECT_EQ(state.unobserved_by_joints, 0.0);
