@@ -8,6 +8,7 @@
 
 #include "monitor/files/build_info.hpp"
 #include "tests/monitor/replay/recorded_runs.hpp"
+#include "tests/monitor/tick/scara_cell.hpp"
 #include "tests/shared/scratch_folder.hpp"
 
 namespace clearance::test {
@@ -60,6 +61,34 @@ TEST(Recorder, BatchesOfLaterTicksWaitForTheirReport) {
     if (message.kind == TopicKind::kDistances) order += 'd';
   }
   EXPECT_EQ("pdpdpd", order);
+}
+
+TEST(Recorder, NamesJointsAsTheCellDidThatTheirBatchWasMadeFor) {
+  const ScratchFolder folder;
+  const Cell first{scara_cell()};
+  Cell second{scara_cell()};
+  second.scene.variables[0].name = "renamed";
+  second.scene.revision = first.scene.revision + 1;
+  Monitor monitor(second.scene);
+  Recorder recorder(folder / "a.mcap", first, kStart);
+  recorder.change(second, {.began_after = 0, .from = 1});
+  std::uint64_t number = 0;
+  for (const std::uint64_t revision : {first.scene.revision, second.scene.revision}) {
+    PoseBatch batch{SourceName("arm"), ++number, revision, {}};
+    const auto positions = joints(0.1, 0.2, 0.1, kStart);
+    batch.joints.assign(positions.begin(), positions.end());
+    recorder.poses(batch);
+    const SourceUse use{SourceName("arm"), number};
+    recorder.report(monitor.tick({}, kStart + static_cast<std::int64_t>(number) * kTick),
+                    {&use, 1});
+  }
+  ASSERT_TRUE(recorder.close());
+  std::vector<std::string> names;
+  for (const Kept& message : messages_of(folder / "a.mcap")) {
+    if (message.kind == TopicKind::kJointStates)
+      names.emplace_back(decoded<clearance_msg_JointStates>(message)->names._buffer[0]);
+  }
+  EXPECT_THAT(names, testing::ElementsAre(first.scene.variables[0].name, "renamed"));
 }
 
 // A ball of 1 m/s at most near a post: it is unknown, then near, late, and near again.
