@@ -19,19 +19,12 @@ std::string text_of(const CellChange& change) {
   const std::string name(kChangeNames[change.index()]);
   return std::visit(
       [&name](const auto& of) {
-        if constexpr (requires { of.object; }) {
-          return name + " " + of.object;
-        } else if constexpr (requires { of.robot; }) {
-          return name + " " + of.robot;
-        } else if constexpr (requires { of.zone; }) {
-          return name + " " + of.zone;
-        } else if constexpr (requires { of.contact; }) {
-          return name + " " + of.contact;
-        } else if constexpr (requires { of.a; }) {
-          return name + " " + of.a + ", " + of.b;
-        } else {
-          return name;
-        }
+        if constexpr (requires { of.object; }) return name + " " + of.object;
+        if constexpr (requires { of.robot; }) return name + " " + of.robot;
+        if constexpr (requires { of.zone; }) return name + " " + of.zone;
+        if constexpr (requires { of.contact; }) return name + " " + of.contact;
+        if constexpr (requires { of.a; }) return name + " " + of.a + ", " + of.b;
+        return name;
       },
       change);
 }
