@@ -1,6 +1,5 @@
 #include "monitor/intake/layout.hpp"
 
-#include <algorithm>
 #include <bit>
 #include <cmath>
 #include <cstdlib>

@@ -5,7 +5,7 @@ ROOT = pathlib.Path(__file__).resolve().parents[2]
 FOLDER = ROOT / "tests" / "mutants"
 PRODUCT = ("core", "config", "monitor")  # the folders that slips are planted into
 HEADER = "tests/mutants/chosen_slip.hpp"
-NUMBERS = 8192  # of slips are below this, as in the header
+NUMBERS = int(re.search(r"kClearanceSlips = (\d+);", (ROOT / HEADER).read_text())[1])  # of slips are below this
 
 # `tests`: the folder in tests/ whose tests come first.
 Slip = collections.namedtuple("Slip", "id file tests context original text reason where")

@@ -1,4 +1,4 @@
-// How many requests wait, and how many bytes.
+// A queue of requests is full by their number or by their bytes.
 #include "monitor/loop/request_queue.hpp"
 
 #include <gtest/gtest.h>
