@@ -58,9 +58,9 @@ PartnerPort::PartnerPort(Participant& participant, const Topics& topics,
                          const DaemonIdentity& identity, TickPartner& ticks)
     : identity_(identity),
       ticks_(ticks),
-      lease_ns_(leader_lease_ns(ticks.period_ns())),
+      lease_(ticks.period_ns()),
       ticks_writer_(participant.writer(TopicKind::kPartnerTicks, topics.partner_ticks,
-                                       {.lease_ns = lease_ns_})),
+                                       {.lease_ns = lease_.lease_ns()})),
       states_writer_(participant.writer(TopicKind::kPartnerStates, topics.partner_states)),
       ticks_reader_(participant.partner_reader(TopicKind::kPartnerTicks, topics.partner_ticks)),
       states_reader_(participant.partner_reader(TopicKind::kPartnerStates, topics.partner_states)),
@@ -125,9 +125,8 @@ void PartnerPort::write_notices() {
       out.frames._length = static_cast<std::uint32_t>(notice->frame_count);
       for (std::size_t i = 0; i < notice->frame_count; ++i)
         out.frames._buffer[i] = {notice->frames[i].sensor, notice->frames[i].content};
-      // A notice that has waited while this daemon stood still is no sign that it led meanwhile.
-      const std::int64_t now_ns = std::min(notice->due_ns, SystemClock().monotonic_ns());
-      if (dds_write(ticks_writer_, &out) == DDS_RETCODE_OK) written_ns_ = now_ns;
+      const std::int64_t now_ns = SystemClock().monotonic_ns();
+      if (dds_write(ticks_writer_, &out) == DDS_RETCODE_OK) lease_.noticed(now_ns, notice->due_ns);
     }
   }
 }
@@ -353,11 +352,9 @@ void PartnerPort::send_scene(std::span<const clearance_msg_SceneChange> changes,
   write(scenes_writer_, &*sample, "a change of the scene for the partner");
 }
 
-// A leader stops writing somewhat before its lease ends.
 bool PartnerPort::leads() const {
-  if (ticks_.standing() != PartnerStanding::kLeading) return false;
-  const std::int64_t now = SystemClock().monotonic_ns();
-  return now - ticks_.leads_since_ns() > lease_ns_ && now - written_ns_ < lease_ns_ * 3 / 4 &&
+  return ticks_.standing() == PartnerStanding::kLeading &&
+         lease_.holds(SystemClock().monotonic_ns(), ticks_.leads_since_ns()) &&
          writers_alive(ticks_reader_) == 0;
 }
 

@@ -15,6 +15,7 @@
 
 #include "config/cell/topics.hpp"
 #include "monitor/dds/daemon_identity.hpp"
+#include "monitor/dds/leader_lease.hpp"
 #include "monitor/dds/partner_reports.hpp"
 #include "monitor/loop/tick_partner.hpp"
 #include "monitor/participant/participant.hpp"
@@ -22,13 +23,6 @@
 #include "monitor/wire/partner_state.hpp"
 
 namespace clearance {
-
-// A leader counts as leading for so long after its last notice. With ticks of this period, two
-// notices in a row would have to be late.
-[[nodiscard]] constexpr std::int64_t leader_lease_ns(std::int64_t period_ns) noexcept {
-  constexpr std::int64_t kLeast = 20'000'000;
-  return std::max(kLeast, 2 * period_ns);
-}
 
 // The least delay of the partner's notices: what remains of it is the error of the phase. It holds
 // for the last 512 to 1024 notices, so that it follows clocks that drift.
@@ -81,8 +75,8 @@ class PartnerPort {
 
   // The thread that publishes. The tag of the report of this cycle, in the order of reports.
   [[nodiscard]] TickTag tag(std::uint64_t cycle) noexcept;
-  // True if this daemon writes what has one leader: it leads, it has said so within the lease, and
-  // no other leader's lease lasts.
+  // True if this daemon writes what has one leader: it leads, its lease holds, and no other
+  // leader's lease lasts.
   [[nodiscard]] bool leads() const;
   void published(const clearance_msg_Distances& report) { reports_.note_own(report); }
   void fill(clearance_msg_PartnerHealth& out);
@@ -112,14 +106,13 @@ class PartnerPort {
 
   const DaemonIdentity& identity_;
   TickPartner& ticks_;
-  const std::int64_t lease_ns_;
+  LeaderLease lease_;
   Actions actions_;
   dds_entity_t ticks_writer_, states_writer_, ticks_reader_, states_reader_, reports_reader_,
       catalogues_reader_, scenes_writer_, scenes_reader_;
   DataWait wait_;
   PartnerReports reports_;
   LeastDelay delay_;
-  std::atomic<std::int64_t> written_ns_{0};  // the last notice, CLOCK_MONOTONIC
   std::atomic<std::uint64_t> partner_revision_{0};
   std::uint64_t leader_ = 0, leader_revision_ = 0;  // of the last notice that was heard
   std::int64_t leader_heard_ns_ = 0;

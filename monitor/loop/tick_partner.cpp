@@ -145,7 +145,9 @@ std::int64_t TickPartner::decide(std::int64_t deadline, std::uint64_t cycle,
   revision_ = revision;
   store_.take_in();
   listen();
-  const std::int64_t late_ns = clock_.monotonic_ns() - deadline;
+  // Ticks that the loop has skipped count: the whole process may have been stopped.
+  const std::int64_t late_ns =
+      clock_.monotonic_ns() - std::min(deadline, deadline_ + options_.period_ns);
   const bool knows_more = standing_ == kFollowing && known(cycle_) != nullptr;
   const bool is_in_step = standing_ == kLeading || standing_ == kFollowing;
   if (late_ns > options_.period_ns / 2 && partner_present_ && is_in_step && !knows_more)
@@ -171,9 +173,9 @@ std::int64_t TickPartner::decide(std::int64_t deadline, std::uint64_t cycle,
   return deadline_ = deadline;
 }
 
-// The whole process may have been stopped. Two passes of the other thread, the second of which
-// began after this call, have taken in everything. A tick that is a little late waits no longer
-// than a period: the partner may have nothing to say any more.
+// Two passes of the other thread, the second of which began after this call, have taken in
+// everything. A tick that is a little late waits no longer than a period: the partner may have
+// nothing to say any more.
 void TickPartner::hear_out(std::int64_t late_ns) noexcept {
   const std::uint64_t passes = passes_.load(std::memory_order_acquire) + 2;
   const std::int64_t most = std::min(kHearNs, std::max(late_ns, options_.period_ns));

@@ -252,8 +252,8 @@ void ReportWriter::write_report(const QueuedReport& queued) {
     return note_delay(queued, false);
   }
   const bool published = write_distances(queued, tag);
-  if (leads_ && separated_count(now_->cell.scene).any()) write_separation(queued.report);
-  if (leads_ && now_->cell.scene.gradients) {
+  if (separated_count(now_->cell.scene).any() && leads_now()) write_separation(queued.report);
+  if (now_->cell.scene.gradients && leads_now()) {
     clearance_msg_Gradients& gradients = now_->gradients.of(queued.report, dds_time());
     gradients.daemon = identity_.id;
     gradients.period_ns = now_->period_ns;
@@ -265,6 +265,11 @@ void ReportWriter::write_report(const QueuedReport& queued) {
   if (also_ != nullptr && leads_) also_->report_ended();
   contact_log_.note(queued.report.contacts);
   if (published) published_ = queued.report.cycle;
+}
+
+// This process may have been stopped since it was asked last.
+bool ReportWriter::leads_now() const {
+  return leads_ && (partner_ == nullptr || partner_->leads());
 }
 
 // The time that clients need to receive the report is not in it.

@@ -109,6 +109,7 @@ class ReportWriter {
   void note_delay(const QueuedReport& queued, bool published);
   [[nodiscard]] bool write_distances(const QueuedReport& queued, const TickTag& tag);
   void note_standing(PartnerStanding standing);
+  [[nodiscard]] bool leads_now() const;
   void settle_catalogue();
   void write_separation(const Report& report);
   void write_health(const LoopStatistics& statistics);

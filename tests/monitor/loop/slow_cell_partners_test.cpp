@@ -74,5 +74,26 @@ TEST_F(TickPartnersOfASlowCell, ADaemonThatIsApartDoesNotLeadForNoticesThatAreAL
   EXPECT_EQ(ticks.standing(), kLeading) << "it was heard no more";
 }
 
+// The loop has skipped the ticks of the stop, so that the next one is not late. The thread that
+// hears takes in what the partner has announced while this one waits for it.
+TEST_F(TickPartnersOfASlowCell, ALeaderThatWasStoppedHearsTheOtherOneBeforeItTicksAgain) {
+  lead();
+  ticks.set_partner_present(true);
+  TickNotice notice;
+  notice.daemon = 2;
+  notice.term = 100;
+  notice.cycle = cycle + 20;
+  constexpr std::int64_t kStopped = 20 * kPeriod;
+  deadline += kStopped;
+  notice.due_ns = clock.monotonic_ns() + kStopped;
+  clock.while_asleep = [&, sleeps = 0](int) mutable {
+    if (++sleeps == 1) return;  // until the tick
+    EXPECT_TRUE(sleeps > 2 || ticks.hear(notice));
+    ticks.end_pass();
+  };
+  tick(kTick);
+  EXPECT_EQ(ticks.standing(), kApart);
+}
+
 }  // namespace
 }  // namespace clearance
