@@ -2,6 +2,8 @@
 // They are used when they can have got there. Oracles: the motions that the test makes.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <map>
 #include <optional>
 #include <vector>
@@ -83,6 +85,31 @@ TEST_F(LeapsOfMounts, AreTakenWhenTheFrameCanHaveGotThereAtItsSpeedAndNotAfterAS
     expect(990, there_ms - 20, std::nullopt);
     expect(there_ms + 1300, there_ms + 2400, kDistance);
   }
+}
+
+// Where no speed is stated, the frame may have turned back meanwhile.
+TEST_F(LeapsOfMounts, ByATurnAreUncertainByItForASecond) {
+  constexpr double kTurn = 0.5;  // rad, of a frame that may turn by 1 rad/s
+  make_with_info("frame: mast");
+  const auto send = [&](int from_ms, int to_ms, double turn) {
+    double least = kInfinity;
+    for (int ms = from_ms; ms < to_ms; ms += 20) {
+      const std::int64_t at = kStart + ms * kMs;
+      const test::FrameText mast{
+          "map", "mast", {0, 0, 0}, {0, 0, std::sin(turn / 2), std::cos(turn / 2)}};
+      add(Type::kTransforms, test::transforms(at, at, {mast}).cdr, at);
+      if (ms % 100 != 0) continue;
+      const auto frames = see(at - 10 * kMs, kMs, 10 * kMs);
+      if (!frames.empty()) least = std::min(least, frames[0].pose_error);
+    }
+    return least;
+  };
+  const double before = send(0, 1000, 0.0);
+  send(1000, 1200, kTurn);
+  const double uncertain = send(1200, 1900, kTurn);
+  EXPECT_LT(uncertain, kInfinity) << "it is used";
+  EXPECT_GT(uncertain, before + kTurn * 0.3) << "at the least depth";
+  EXPECT_NEAR(send(2200, 3000, kTurn), before, 1e-6);
 }
 
 // The frame is known again an age limit after the last wrong transform.

@@ -56,22 +56,28 @@ TEST_F(LeftOutTest, ABodyThatMovesNoFasterThanStatedIsHiddenForItsFirstFrameOnly
   }
 }
 
+// Speckle behind the links counts, too: the frames before did not show that place.
 TEST_F(LeftOutTest, TheConeOfAHiddenPixelIsUnseen) {
   make(kImage + kPersist + ", unseen: true" + kAbove);
-  add(Type::kCameraInfo, InfoText{}.cdr(), kStart);
+  add(Type::kCameraInfo, narrow().cdr(), kStart);
   add_joints(0.0, kStart);
-  const auto unseen = [&](const ImageText& image) {
+  int number = 0;
+  const auto unseen = [&](int depth) {
+    ++number;
+    ImageText image = flat(number, static_cast<std::uint16_t>(3500 + number));
+    for (std::size_t pixel = 0; depth > 0 && pixel < 48; ++pixel)
+      put(image, pixel, static_cast<std::uint16_t>(depth));
     add_joints(0.0, image.stamp_ns);
     static_cast<void>(elements(image));
     double least = kInfinity;
     for (const OwnImageStatus& link : sensors->status(0).own) least = std::min(least, link.unseen);
     return least;
   };
-  static_cast<void>(unseen(flat(0, 3900)));
-  const double before = unseen(flat(1, 3901));
-  ImageText speckled = flat(2, 3902);
-  for (std::size_t pixel = 0; pixel < 48; ++pixel) put(speckled, pixel, 700);
-  EXPECT_LT(unseen(speckled), before - 0.1);
+  for (const int speckle : {700, 3900}) {
+    for (int i = 0; i < 4; ++i) static_cast<void>(unseen(0));
+    const double before = unseen(0);
+    EXPECT_LT(unseen(speckle), before - 0.1) << speckle;
+  }
 }
 
 // A second after the last joint states each link may be metres from where it was.
@@ -131,6 +137,26 @@ TEST(Persistence, TheTimeBetweenTwoFramesCountsWhicheverIsStampedLater) {
   EXPECT_TRUE(hidden_at(1.0F, 1050)) << "the first frame";
   EXPECT_FALSE(hidden_at(1.07F, 1000)) << "1.5 m/s for 50 ms";
   EXPECT_TRUE(hidden_at(2.0F, 1050));
+}
+
+// Both stamps may be off by 20 ms, so that the body had 50 ms.
+TEST(Persistence, TheErrorsOfBothStampsCountAsTime) {
+  for (const bool has_error : {false, true}) {
+    Sensor sensor;
+    sensor.persist_frames = 2;
+    sensor.persist_of = 4;
+    sensor.greatest_depth = 4.0;
+    sensor.stamp_error_ns = has_error ? 20'000'000 : 0;
+    Persistence persistence(sensor, 1.5);
+    const auto is_hidden = [&](float x, std::int64_t stamp_ms) {
+      SeenCloud cloud = SeenCloud::of_points(1);
+      const std::vector<MeasuredPoint> point = {{x, 0.0F, 0.0F, 0.01F}};
+      EXPECT_EQ(cloud.points()->build(point, {Vec3::Zero(), 5.0}), CloudBuild::kBuilt);
+      return persistence.hide(cloud, {}, 0.001, stamp_ms * 1'000'000, {}) > 0;
+    };
+    EXPECT_TRUE(is_hidden(1.0F, 1000)) << "the first frame";
+    EXPECT_EQ(is_hidden(1.07F, 1010), !has_error);
+  }
 }
 
 TEST(Persistence, NoElementIsHiddenThatEnoughFramesHaveWithinSpeedAndErrors) {

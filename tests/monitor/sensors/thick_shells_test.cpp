@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 
 #include "tests/monitor/sensors/small_camera.hpp"
 
@@ -55,6 +56,19 @@ TEST_F(ThickShells, OfALinkWithASilentJointHideNoPersonFromThePairsOfOthers) {
       << "it was left out with the arm";
   EXPECT_LE(lower, kExact);
   EXPECT_GT(lower, kExact - 0.2) << "what was left out is bounded by a box, not by the whole shell";
+}
+
+// The pixels are 4 mm wide, which is less than the thickness that counts as trusted.
+TEST_F(ThickShells, HideNoSmallElementsFromThePairsOfOthers) {
+  make(kImage + kOverTheArm);
+  add(Type::kCameraInfo, narrow().cdr(), kStart);
+  add_joints(0.0, kStart);
+  const double lower = lower_of_the_cart(visitor(30));
+  EXPECT_GT(sensors->status(0).own[2].elements + sensors->status(0).own[1].elements, 0u)
+      << "it was left out with the arm";
+  const double exact = std::hypot(0.58 - 0.5 - 1.76 / 400.0, 0.5 - 1.76 / 400.0) - 0.1;
+  EXPECT_LE(lower, exact);
+  EXPECT_GT(lower, exact - 0.2);
 }
 
 TEST_F(ThickShells, AreTrustedUpToTheThicknessThatTheCellStates) {

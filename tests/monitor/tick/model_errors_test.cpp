@@ -305,6 +305,38 @@ TEST(ModelErrors, BodiesThatTurnTogetherAreNeverNearerThanTheSweptBound) {
   EXPECT_LE(report->pairs[0].swept_lower, (at - tool).norm() - 2.0 * radius + 1e-12);
 }
 
+// A beam whose end beside the joint is the lower one, by less than the joint's error: the other end
+// may be nearer to the floor.
+TEST(ModelErrors, OfABodyThatIsNearlyParallelMayBringItsFarEndNearest) {
+  const ScratchFolder folder;
+  write_text(folder / "beam.urdf",
+             "<robot name=\"beam\"><link name=\"foot\"/><link name=\"beam\"><collision><origin "
+             "xyz=\"1 0 0\" rpy=\"0.5 0 0\"/><geometry><box size=\"2 0.1 0.1\"/></geometry>"
+             "</collision></link><joint name=\"turn\" type=\"continuous\"><parent link=\"foot\"/>"
+             "<child link=\"beam\"/><axis xyz=\"0 1 0\"/></joint></robot>");
+  const double error = 0.01;
+  const Scene scene = scene_of(
+      "name: beam\nunits: {length: m, angle: rad}\nrobots: [{name: arm, urdf: beam.urdf}]\n"
+      "objects: [{name: floor, fixed: true, half_space: {normal: [0, 0, 1], offset: -1}}]\n"
+      "pairs: [{between: [arm, floor], publish: true}]\nerrors: {joints: {position: 0.01}}\n",
+      folder / "cell.yaml");
+  const double half = 0.05 * (std::cos(0.5) + std::sin(0.5));  // of the beam's height
+  for (const double at : {-0.02, -0.008, -0.005, -0.002, 0.005}) {
+    Monitor monitor(scene);
+    for (int t = 0; t < 2; ++t)
+      static_cast<void>(
+          monitor.tick({}, std::vector{joint(0, at, kStart + t * kTick)}, kStart + t * kTick));
+    const PairReport pair = monitor.pair(0);
+    double truth = kInfinity;
+    for (const double angle : {at - error, at + error}) {
+      for (const double x : {0.0, 2.0})
+        truth = std::min(truth, 1.0 - x * std::sin(angle) - half * std::cos(angle));
+    }
+    EXPECT_LE(pair.lower, truth + kOracle) << at;
+    EXPECT_GT(pair.lower, truth - 0.003) << at;
+  }
+}
+
 TEST(ModelErrors, WithoutAnyTheReportIsTheSame) {
   const Scene with = workshop_scene("errors: {joints: {position: 0}}\n"),
               without = workshop_scene("");

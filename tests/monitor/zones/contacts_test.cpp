@@ -37,9 +37,9 @@ Scene part_on_table() {
   return scene;
 }
 
-class Contacts : public testing::Test {
+class AllowedContacts : public testing::Test {
  protected:
-  Contacts() { begin(part_on_table()); }
+  AllowedContacts() { begin(part_on_table()); }
   void begin(const Scene& scene) {
     scenes.push_back(scene);
     monitor = std::make_unique<Monitor>(scenes.back());
@@ -78,7 +78,7 @@ class Contacts : public testing::Test {
   std::int64_t now = kStart;
 };
 
-TEST_F(Contacts, AnAllowedContactMakesNoZoneActiveAndIsReportedAsWhatItIs) {
+TEST_F(AllowedContacts, AnAllowedContactMakesNoZoneActiveAndIsReportedAsWhatItIs) {
   const Report& report = tick(kTouching - 0.001);
   EXPECT_FALSE(report.zones[0].active);
   EXPECT_TRUE(report.zones[0].certified);
@@ -97,7 +97,7 @@ TEST_F(Contacts, AnAllowedContactMakesNoZoneActiveAndIsReportedAsWhatItIs) {
   EXPECT_EQ(contact.ended_cycle, 0u);
 }
 
-TEST_F(Contacts, TheMinimumAndTheBoundOfAllPairsIncludeAnAllowedContact) {
+TEST_F(AllowedContacts, TheMinimumAndTheBoundOfAllPairsIncludeAnAllowedContact) {
   const Report& report = rest(kTouching - 0.001);
   EXPECT_EQ(report.minimum.pair, 0u);
   EXPECT_NEAR(report.minimum.distance, -0.001, 1e-12);
@@ -106,12 +106,12 @@ TEST_F(Contacts, TheMinimumAndTheBoundOfAllPairsIncludeAnAllowedContact) {
   EXPECT_EQ(report.contacts[0].pair, report.minimum.pair) << "so a client sees that it is allowed";
 }
 
-TEST_F(Contacts, APairThatIsNearWithoutTouchingIsAllowedToo) {
+TEST_F(AllowedContacts, APairThatIsNearWithoutTouchingIsAllowedToo) {
   EXPECT_FALSE(rest(kTouching + 0.01).zones[0].active);
   EXPECT_EQ(rest(kTouching + 0.01).contacts[0].depth, 0.0);
 }
 
-TEST_F(Contacts, OtherPairsOfTheZoneStillMakeItActive) {
+TEST_F(AllowedContacts, OtherPairsOfTheZoneStillMakeItActive) {
   const Report& report = rest(1.0 - kTouching - 0.001);
   EXPECT_TRUE(report.zones[0].active);
   EXPECT_EQ(report.zones[0].cause, ZoneCause::kNear);
@@ -119,7 +119,7 @@ TEST_F(Contacts, OtherPairsOfTheZoneStillMakeItActive) {
 }
 
 // The margin is a thousand times the rounding of the distance.
-TEST_F(Contacts, DeeperThanAllowedByATrifleIsAViolation) {
+TEST_F(AllowedContacts, DeeperThanAllowedByATrifleIsAViolation) {
   constexpr double kTrifle = 1e-12;
   EXPECT_FALSE(rest(kTouching - kDepth + kTrifle).zones[0].active);
   const Report& report = rest(kTouching - kDepth - kTrifle);
@@ -131,7 +131,7 @@ TEST_F(Contacts, DeeperThanAllowedByATrifleIsAViolation) {
 }
 
 // At both ticks the depth is 1 mm. In between one ball goes through the other.
-TEST_F(Contacts, DeeperThanAllowedBetweenTwoTicksIsAViolation) {
+TEST_F(AllowedContacts, DeeperThanAllowedBetweenTwoTicksIsAViolation) {
   rest(kTouching - 0.001);
   const Report& report = tick(-kTouching + 0.001);
   EXPECT_EQ(report.contacts[0].status, ContactStatus::kTooDeep);
@@ -141,7 +141,7 @@ TEST_F(Contacts, DeeperThanAllowedBetweenTwoTicksIsAViolation) {
 }
 
 // The bound by both ends, without queries between the ticks, would be 10.8 mm deep.
-TEST_F(Contacts, AFastSlideThatStaysWithinTheDepthIsNoViolation) {
+TEST_F(AllowedContacts, AFastSlideThatStaysWithinTheDepthIsNoViolation) {
   tick(Vec3(kTouching - 0.001, -0.01, 0));
   const Report& report = tick(Vec3(kTouching - 0.001, 0.01, 0));
   EXPECT_EQ(report.contacts[0].status, ContactStatus::kAllowed);
@@ -149,7 +149,7 @@ TEST_F(Contacts, AFastSlideThatStaysWithinTheDepthIsNoViolation) {
   EXPECT_FALSE(report.zones[0].active);
 }
 
-TEST_F(Contacts, ALowerBoundOfMinusInfinityIsAViolation) {
+TEST_F(AllowedContacts, ALowerBoundOfMinusInfinityIsAViolation) {
   Scene scene = test::cell_of({test::moving("plate", {test::floor()}),
                                test::fixed("ground", {test::floor()}, test::at(0, 0, 0))});
   scene.pairs[0].publish = true;
@@ -163,7 +163,7 @@ TEST_F(Contacts, ALowerBoundOfMinusInfinityIsAViolation) {
   EXPECT_EQ(report.zones[0].cause, ZoneCause::kContactTooDeep);
 }
 
-TEST_F(Contacts, APoseThatFreezesDuringAnAllowedContactMakesTheZoneActive) {
+TEST_F(AllowedContacts, APoseThatFreezesDuringAnAllowedContactMakesTheZoneActive) {
   for (const double max_speed : {kInfinity, 1e-9}) {
     Scene scene = part_on_table();
     scene.objects[kPart].max_speed = max_speed;
@@ -183,7 +183,7 @@ TEST_F(Contacts, APoseThatFreezesDuringAnAllowedContactMakesTheZoneActive) {
 
 // After 25 ms without a pose, the part at 1 m/s may have been 25 mm deep, and no pose tells. Where
 // its poses themselves lead through the table, that is too deep.
-TEST_F(Contacts, OfAPartThatWasLateAreUnknownAsFarAsItMayHaveMovedUnseen) {
+TEST_F(AllowedContacts, OfAPartThatWasLateAreUnknownAsFarAsItMayHaveMovedUnseen) {
   Scene scene = part_on_table();
   scene.objects[kPart].max_speed = 1.0;
   for (const bool goes_through : {false, true}) {
@@ -198,14 +198,14 @@ TEST_F(Contacts, OfAPartThatWasLateAreUnknownAsFarAsItMayHaveMovedUnseen) {
   }
 }
 
-TEST_F(Contacts, APoseThatWasNeverHeardMakesTheZoneActive) {
+TEST_F(AllowedContacts, APoseThatWasNeverHeardMakesTheZoneActive) {
   const Report& report = tick_without_pose();
   EXPECT_EQ(report.contacts[0].status, ContactStatus::kUnknown);
   EXPECT_EQ(report.contacts[0].depth, kInfinity);
   EXPECT_EQ(report.zones[0].cause, ZoneCause::kUnknown);
 }
 
-TEST_F(Contacts, AContradictedPoseMakesTheZoneActive) {
+TEST_F(AllowedContacts, AContradictedPoseMakesTheZoneActive) {
   Scene scene = part_on_table();
   scene.objects[kPart].may_jump = false;
   scene.objects[kPart].max_speed = 1.0;
@@ -216,7 +216,7 @@ TEST_F(Contacts, AContradictedPoseMakesTheZoneActive) {
   EXPECT_EQ(report.zones[0].cause, ZoneCause::kContradicted);
 }
 
-TEST_F(Contacts, ADiscontinuityMakesTheZoneActive) {
+TEST_F(AllowedContacts, ADiscontinuityMakesTheZoneActive) {
   rest(kTouching - 0.001);
   tick(5e4);
   const Report& report = tick(kTouching - 0.001);
@@ -225,7 +225,7 @@ TEST_F(Contacts, ADiscontinuityMakesTheZoneActive) {
   EXPECT_FALSE(tick(kTouching - 0.001).zones[0].active);
 }
 
-TEST_F(Contacts, AnAbsentObjectHasNoContact) {
+TEST_F(AllowedContacts, AnAbsentObjectHasNoContact) {
   rest(kTouching - 0.001);
   ASSERT_TRUE(monitor->set_absent(kPart, true));
   const Report& report = tick_without_pose();
@@ -236,7 +236,7 @@ TEST_F(Contacts, AnAbsentObjectHasNoContact) {
   EXPECT_EQ(tick(kTouching - 0.001).contacts[0].status, ContactStatus::kAllowed);
 }
 
-TEST_F(Contacts, APartThatComesSecondIsLateOrAbsentLikeOneThatComesFirst) {
+TEST_F(AllowedContacts, APartThatComesSecondIsLateOrAbsentLikeOneThatComesFirst) {
   for (const std::uint32_t part : {0U, 1U}) {
     std::vector<Object> objects{test::moving("part", {test::ball(0.1)}),
                                 test::fixed("table", {test::ball(0.1)}, test::at(0, 0, 0))};
@@ -267,7 +267,7 @@ TEST_F(Contacts, APartThatComesSecondIsLateOrAbsentLikeOneThatComesFirst) {
 }
 
 // The tick in which the pair is far enough is the last of the allowance.
-TEST_F(Contacts, TheContactEndsAfterTheTickInWhichThePairIsCertifiedToBeFarEnough) {
+TEST_F(AllowedContacts, TheContactEndsAfterTheTickInWhichThePairIsCertifiedToBeFarEnough) {
   begin_with({.distance = 0.01});
   rest(kTouching - 0.001);
   EXPECT_EQ(rest(kTouching + 0.01 - 1e-12).contacts[0].ended, ContactEnded::kNot);
@@ -285,7 +285,7 @@ TEST_F(Contacts, TheContactEndsAfterTheTickInWhichThePairIsCertifiedToBeFarEnoug
   EXPECT_EQ(again.zones[0].cause, ZoneCause::kContactTooLate);
 }
 
-TEST_F(Contacts, AZoneBelowTheDistanceThatEndsTheContactStaysClear) {
+TEST_F(AllowedContacts, AZoneBelowTheDistanceThatEndsTheContactStaysClear) {
   begin_with({.distance = 0.1});
   for (const double gap : {-0.001, 0.02, 0.07, 0.11, 0.12})
     EXPECT_FALSE(tick(kTouching + gap).zones[0].active) << gap;
@@ -293,7 +293,7 @@ TEST_F(Contacts, AZoneBelowTheDistanceThatEndsTheContactStaysClear) {
   EXPECT_TRUE(tick(kTouching + 0.02).zones[0].active);
 }
 
-TEST_F(Contacts, LaterThanAllowedIsAViolation) {
+TEST_F(AllowedContacts, LaterThanAllowedIsAViolation) {
   const std::int64_t first = now + kTick;
   for (const auto& [end, ended] : std::initializer_list<std::pair<ContactEnd, ContactEnded>>{
            {{.duration_ns = 4 * kTick}, ContactEnded::kByTime},
@@ -317,7 +317,7 @@ TEST_F(Contacts, LaterThanAllowedIsAViolation) {
   }
 }
 
-TEST_F(Contacts, TheFirstOfSeveralEndsCounts) {
+TEST_F(AllowedContacts, TheFirstOfSeveralEndsCounts) {
   begin_with({.distance = 0.01, .duration_ns = 50 * kTick, .last_cycle = 100});
   tick(kTouching + 0.02);
   EXPECT_EQ(tick(kTouching).contacts[0].ended, ContactEnded::kByDistance);
@@ -326,7 +326,7 @@ TEST_F(Contacts, TheFirstOfSeveralEndsCounts) {
   EXPECT_EQ(tick(kTouching).contacts[0].ended, ContactEnded::kByCycle);
 }
 
-TEST_F(Contacts, AnAllowanceGoesOnAcrossAChangeOfTheScene) {
+TEST_F(AllowedContacts, AnAllowanceGoesOnAcrossAChangeOfTheScene) {
   begin_with({.distance = 0.01});
   rest(kTouching - 0.001);
   const ContactReport before = tick(kTouching - 0.001).contacts[0];
@@ -344,7 +344,7 @@ TEST_F(Contacts, AnAllowanceGoesOnAcrossAChangeOfTheScene) {
       << "without the end it is another allowance";
 }
 
-TEST_F(Contacts, WhatHasEndedStaysSoAcrossAChangeOfTheScene) {
+TEST_F(AllowedContacts, WhatHasEndedStaysSoAcrossAChangeOfTheScene) {
   begin_with({.distance = 0.01});
   const Scene scene = scenes.back();
   rest(kTouching - 0.001);
@@ -362,7 +362,7 @@ TEST_F(Contacts, WhatHasEndedStaysSoAcrossAChangeOfTheScene) {
       << "other terms begin anew";
 }
 
-TEST_F(Contacts, ATickWithContactsAllocatesNothing) {
+TEST_F(AllowedContacts, ATickWithContactsAllocatesNothing) {
   begin_with({.distance = 0.1});
   rest(kTouching - 0.001);
   const std::uint64_t before = allocations();

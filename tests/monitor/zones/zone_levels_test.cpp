@@ -2,6 +2,9 @@
 
 #include <gtest/gtest.h>
 
+#include <vector>
+
+#include "monitor/zones/zones.hpp"
 #include "tests/monitor/tick/small_cells.hpp"
 
 namespace clearance {
@@ -35,6 +38,21 @@ TEST(ZoneLevels, GoByTheHysteresisOfAZone) {
   const Zone zone = test::zone_over(scene, 0.1, 0.15);
   EXPECT_EQ(ZoneLevels::threshold(zone, false), 0.1);
   EXPECT_GT(ZoneLevels::threshold(zone, true), 0.15);
+}
+
+TEST(ZoneLevels, OfPairsThatWaitAreThoseWithTheLargestMargins) {
+  Scene scene = three_balls();
+  scene.zones = {test::zone_over(scene, 0.1, 0.15)};
+  const ZoneLevels levels(scene);
+  const Contacts contacts(scene);
+  const std::vector<TrackedObject> objects(scene.objects.size());
+  for (const double distance : {0.125, 0.115}) {
+    Zones zones(scene, levels, contacts);
+    zones.finish(objects, {.now = distance, .since = distance}, false, 1);
+    EXPECT_LE(zones.reports()[0].clearance, distance - 0.02);
+    EXPECT_NEAR(zones.reports()[0].clearance, distance - 0.02, 1e-12);
+    EXPECT_EQ(zones.reports()[0].active, distance < 0.12);
+  }
 }
 
 TEST(ZoneLevels, AreNoneInASceneWithoutZones) {
