@@ -53,8 +53,9 @@ struct CurvedConclusion {
   return found.lower > 0.0 && !gap.isZero(0.0) ? unit_along(gap) : found.normal;
 }
 
-// Bounds that have converged are within this of each other, times the pair's size.
-inline constexpr double kConvergedCurvedGap = 1e-13;
+// Bounds that have converged are within this of each other, times the pair's size. The error of the
+// place may be larger: then they were within kComputedGap before any error was added.
+inline constexpr double kConvergedCurvedGap = 1e-13, kComputedGap = 0.75 * kConvergedCurvedGap;
 
 // The result of the bodies with their radii.
 [[nodiscard]] inline DistanceResult conclude(const ConvexBody& a, const ConvexBody& b,
@@ -71,7 +72,8 @@ inline constexpr double kConvergedCurvedGap = 1e-13;
   r.point_on_a = found.point_on_a;
   r.point_on_b = found.point_on_b;
   r.path = DistancePath::kDirection;
-  if (r.upper - r.lower <= kConvergedCurvedGap * (found.size + radii(a, b))) {
+  if (found.upper - found.lower <= kComputedGap * found.size ||
+      r.upper - r.lower <= kConvergedCurvedGap * (found.size + radii(a, b))) {
     r.status = DistanceStatus::kConverged;
   }
   const bool rounded = radii(a, b) > 0.0;

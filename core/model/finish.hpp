@@ -16,7 +16,8 @@ namespace clearance {
 [[gnu::always_inline]] inline void finish(const ConvexBody& a, const ConvexBody& b,
                                           const Vec3& outward, Answer& r) noexcept {
   const double sum = radii(a, b);
-  if (sum != 0.0 && r.upper != -kInfinity) {  // else no translation separates the bodies
+  assert(r.upper != -kInfinity);
+  if (sum != 0.0) {
     const double rounding = rounding_of_radii(sum, r.upper);
     r.distance -= sum;
     r.lower -= sum + rounding;

@@ -190,5 +190,36 @@ TEST(CurvedLaws, AnswersThatNeedNoSearchForADepthAreTheSameWithoutIt) {
   }
 }
 
+// As of a link whose place a chain of joints has rounded. Bounds widen by the error, and say the
+// same as those of polyhedra: what converges, and what overlaps.
+TEST(CurvedLaws, APlaceThatIsNotExactLeavesTheStatusAsItIs) {
+  constexpr double kError = 1e-10;
+  const ConvexBody can = made(cylinder(0.3, 1.0)), egg = made(ellipsoid({0.3, 0.4, 0.5}));
+  const ConvexBody cube = test::cube(), floor = test::half_space({0, 0, 1}, 0.0);
+  const ConvexBody ball = made(point(Vec3::Zero(), 0.2)), cone = made(clearance::cone(0.3, 1.0));
+  int overlapping = 0;
+  for (const ConvexBody* a : {&can, &egg, &cube, &floor, &ball, &cone}) {
+    for (const ConvexBody* b : {&can, &egg, &cone}) {
+      for (const Pose& pose :
+           {test::at(0.1, 0.2, 2.5), Pose{{1.5, 0.3, 2.0}, test::turned({1, 2, 3}, 0.7)},
+            test::at(0.05, 0.1, 0.2), Pose{{0.1, 0.05, 0.2}, test::turned({3, 2, 1}, 0.7)}}) {
+        RelativePose place = relative_pose(Pose{}, pose);
+        const DistanceResult exact = test::cold(*a, *b, place);
+        place.translation_error += kError;
+        TrackingState state;
+        for (const bool again : {false, true}) {
+          const DistanceResult r = distance(*a, *b, place, state);
+          EXPECT_EQ(r.status, exact.status) << again;
+          EXPECT_NE(r.status, DistanceStatus::kIterationLimit);
+          EXPECT_LE(r.lower, exact.lower - kError * (1 - 1e-3));
+          EXPECT_GE(r.upper, exact.upper + kError * (1 - 1e-3));
+          overlapping += r.status == DistanceStatus::kOverlapping ? 1 : 0;
+        }
+      }
+    }
+  }
+  EXPECT_GT(overlapping, 20);
+}
+
 }  // namespace
 }  // namespace clearance

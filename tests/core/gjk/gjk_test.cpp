@@ -5,7 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
+#include <cstdint>
 
 #include "core/shapes.hpp"
 #include "tests/shared/made.hpp"
@@ -69,6 +71,34 @@ TEST(Refine, FindsClosestPointsOfAnUnboundedBodyThatAreFarFromItsVertices) {
     EXPECT_LE(r.lower, 1.0);
     EXPECT_GE(r.upper, 1.0);
     EXPECT_LE(r.upper - r.lower, 2.0 * p.error_bound + p.gap_tolerance);
+  }
+}
+
+// The search begins with a point of the unbounded body that is far out.
+TEST(Refine, BeginsWithAnAnchorOfTheSecondBodyInsteadOfAPointThatIsFarOut) {
+  const std::array rows{HalfSpace{Vec3::UnitZ(), 0.0}, HalfSpace{-Vec3::UnitX(), 1.0},
+                        HalfSpace{-Vec3::UnitY(), 1.0}};
+  const ConvexBody floor = test::made(polyhedron_from_halfspaces(rows)), cube = test::cube();
+  for (const bool floor_is_first : {true, false}) {
+    const ConvexBody &first = floor_is_first ? floor : cube,
+                     &second = floor_is_first ? cube : floor;
+    const Vec3 place = (floor_is_first ? 1.0 : -1.0) * Vec3(3, 5, 1.5);
+    const RelativePose pose = relative_pose(Pose{}, Pose{.position = place});
+    ActiveFeature a(first, nullptr), b(second, &pose);
+    a.place_at_vertex(0);
+    b.place_at_vertex(0);
+    const auto top = std::ranges::find(floor.facets, Vec3(Vec3::UnitZ()), &Facet::normal);
+    ASSERT_NE(top, floor.facets.end());
+    const auto facet = static_cast<std::int32_t>(top - floor.facets.begin());
+    (floor_is_first ? a : b).place_on_facet(facet, Vec3(1e6, 1e6, 0.0));
+    const Precision p = precision(first, second, pose, place.norm());
+    DistanceResult r;
+    r.lower = -kInfinity;
+    r.upper = r.distance = kInfinity;
+    refine(a, b, pose, p, r);
+    EXPECT_TRUE(p.converged(r.upper - r.lower)) << floor_is_first;
+    EXPECT_LE(r.lower, 1.0);
+    EXPECT_GE(r.upper, 1.0);
   }
 }
 

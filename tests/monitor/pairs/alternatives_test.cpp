@@ -232,9 +232,11 @@ TEST_F(Alternatives, OverlappingPairsAreComparedByTheirPartsOnly) {
 
 TEST_F(Alternatives, OfACurvedBodyAreComparedByTheirPartsOnly) {
   scene.objects[kCart].parts = {{"can", test::made(cylinder(0.1, 0.4)), {}}};
-  const GradientAlternative found = between(kCart, kFinger, tick({2.5, 0, 0}));
+  const Report& report = tick({2.5, 0, 0});
+  const GradientAlternative found = between(kCart, kFinger, report);
   EXPECT_EQ(found.status, GradientStatus::kPartsCompared);
   EXPECT_TRUE(std::isnan(found.tilt));
+  for (const PairReport& pair : report.pairs) EXPECT_EQ(pair.status, PairStatus::kConverged);
 }
 
 TEST_F(Alternatives, AreUnknownWhereRatesAre) {

@@ -70,5 +70,21 @@ TEST_F(CloudGradients, AreTheDifferencesOfTheDistance) {
   EXPECT_GT(rates, 5);
 }
 
+// A question's own queries of the picture.
+TEST_F(CloudGradients, BelongToDistancesThatACloserLookConfirms) {
+  const SensorFrame seen = frame();
+  Monitor monitor(cell.scene);
+  ASSERT_TRUE(monitor.show(0, seen));
+  monitor.tick(std::vector{test::sample(0, test::at(0, 0, 50), kStart)},
+               test::joints(0.1, 0.5, 0.1, kStart), kStart + 1'000'000);
+  for (std::uint32_t p = 0; p < cell.scene.pairs.size(); ++p) {
+    const PairReport known = monitor.pair(p);
+    const PairReport closer = monitor.pair_at_least(p, kInfinity);
+    EXPECT_GE(closer.lower, known.lower) << p;
+    EXPECT_LE(closer.upper, known.upper) << p;
+    EXPECT_LE(closer.lower, known.upper) << p;
+  }
+}
+
 }  // namespace
 }  // namespace clearance::sensors_test

@@ -128,6 +128,8 @@ TEST_F(KnownBodies, ThatAreSeenAtTheirPlacesShowThatNothingElseIsThere) {
   const auto frames = settle(table.stamp_ns + 25'000'000);
   ASSERT_EQ(frames.size(), 1u);
   EXPECT_EQ(frames[0].cloud->size(), 0u);
+  cell.scene.gradients = true;
+  for (ObjectPair& pair : cell.scene.pairs) pair.publish = true;
   Monitor monitor(cell.scene);
   ASSERT_TRUE(monitor.show(0, frames[0]));
   for (int i = 1; i < 5; ++i) {
@@ -140,6 +142,9 @@ TEST_F(KnownBodies, ThatAreSeenAtTheirPlacesShowThatNothingElseIsThere) {
       EXPECT_GE(pair.upper, pair.lower);
       EXPECT_LT(pair.upper, kInfinity);
     }
+    EXPECT_FALSE(report.gradients.rates.empty());
+    EXPECT_TRUE(std::ranges::all_of(report.gradients.rates, [](double r) { return std::isnan(r); }))
+        << "the place that is nearest is not known";
   }
   EXPECT_EQ(count(FrameFault::kNothingSeen), 0u);
   for (const std::uint16_t depth : {std::uint16_t{0}, std::uint16_t{1100}}) {
