@@ -50,7 +50,10 @@ class Side {
                .batch = {.samples = 16},
                .alone_after_ns = kAloneAfter,
                .frames = scene.sensors.empty() ? nullptr : &frames}),
-        state(scene, {.frames = &frames, .pace = &ticks}) {}
+        state(scene, {.frames = &frames, .pace = &ticks}) {
+    // The thread that hears goes on while the loop sleeps.
+    clock.while_asleep = [this](int) { ticks.end_pass(); };
+  }
 
   // A source sends this, in every tick another pose.
   void get(std::uint64_t number, const char* source = "arm") {

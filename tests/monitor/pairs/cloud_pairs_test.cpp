@@ -127,7 +127,7 @@ TEST(CloudPairs, DeepInACloudShareTheWorkOfATickAndBothBoundsHold) {
     }
     // Each of the 8 parts may exceed its share by one element, which takes two queries at most.
     EXPECT_LE(work, CloudPairs::kOverlapWorkOfATick + 8 * 2 * kCostOfCurved);
-    EXPECT_GT(unlimited, 3 * CloudPairs::kOverlapWorkOfATick);
+    EXPECT_GT(unlimited, 2 * CloudPairs::kOverlapWorkOfATick);
   }
   EXPECT_GT(wide, queries / 3);
 }
