@@ -13,6 +13,8 @@
 #include <sstream>
 #include <thread>
 
+#include "tests/shared/eventually.hpp"
+
 namespace clearance::test {
 
 namespace {
@@ -102,6 +104,10 @@ bool ChildProcess::told(const std::string& code, const std::vector<std::string>&
     if (line.ends_with(" [" + code + "]") && std::ranges::all_of(names, has)) return true;
   }
   return false;
+}
+
+bool ChildProcess::tells(const std::string& code, const std::vector<std::string>& names) const {
+  return eventually([&] { return told(code, names); });
 }
 
 }  // namespace clearance::test

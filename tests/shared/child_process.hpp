@@ -46,6 +46,9 @@ class ChildProcess {
   // that contains all of these names.
   [[nodiscard]] bool told(const std::string& code,
                           const std::vector<std::string>& names = {}) const;
+  // Waits until it has: a program logs beside its other work, and may be late with a line.
+  [[nodiscard]] bool tells(const std::string& code,
+                           const std::vector<std::string>& names = {}) const;
 
  private:
   std::string output_file_;

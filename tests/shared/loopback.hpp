@@ -7,15 +7,13 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <chrono>
-#include <functional>
 #include <map>
 #include <set>
 #include <string>
-#include <thread>
 #include <vector>
 
 #include "monitor/participant/participant.hpp"
+#include "tests/shared/eventually.hpp"
 
 namespace clearance::test {
 
@@ -29,17 +27,6 @@ namespace clearance::test {
   dds.interface = "lo";
   dds.partition = "test-" + std::to_string(pid) + "-" + std::to_string(++calls);
   return dds;
-}
-
-// Waits until a condition is true. Returns false after a time that only a broken program exceeds.
-[[nodiscard]] inline bool eventually(const std::function<bool()>& is_so,
-                                     std::chrono::seconds limit = std::chrono::seconds(60)) {
-  const auto end = std::chrono::steady_clock::now() + limit;
-  while (!is_so()) {
-    if (std::chrono::steady_clock::now() > end) return false;
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  return true;
 }
 
 [[nodiscard]] inline std::uint32_t matched_readers(dds_entity_t writer) {

@@ -101,7 +101,7 @@ TEST_F(ChangedSharedCells, FollowACommandTogetherOrNotAtAll) {
                      test::with({file.path(), "--late-ms", "1000"}, test::dds_arguments(dds)));
   client::SharedCell whole(connection, {.late_after = milliseconds(1000)});
   ASSERT_TRUE(read_until(whole, [&] { return whole.is_whole(); })) << logs();
-  ASSERT_TRUE(test::eventually([&] { return merge.told("share-heard", {"right floor"}); }));
+  ASSERT_TRUE(merge.tells("share-heard", {"right floor"}));
   client::Commands commands(connection, "planner");
   const auto moved =
       commands.send({SetZoneThresholds{.zone = "near", .enter_below = 0.2, .leave_above = 0.25}});

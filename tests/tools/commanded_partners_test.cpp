@@ -345,7 +345,7 @@ TEST_F(AskedPartners, AreNotAnsweredByADaemonWithTheOldCellThatWasStartedAgain) 
   EXPECT_TRUE(read_until(look, 60)) << logs();
   asking.join();
   if (leading.size() > 1) GTEST_SKIP() << "the leader stood still, and the other one took the lead";
-  EXPECT_TRUE(daemons["right"]->told("partner-state-refused")) << logs();
+  EXPECT_TRUE(daemons["right"]->tells("partner-state-refused")) << logs();
   EXPECT_EQ(revisions, std::set{changed.scene_revision}) << logs();
   daemons["left"]->signal(SIGKILL);
   daemons["left"]->wait();

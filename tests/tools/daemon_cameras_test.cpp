@@ -37,7 +37,7 @@ TEST_F(DaemonCameras, GivesTheExactDistanceToAWallInADepthImage) {
   EXPECT_LE(ball_pair().lower, exact + 1e-12);
   EXPECT_GE(ball_pair().upper, exact - 1e-12);
   EXPECT_LT(ball_pair().upper - ball_pair().lower, 2.0 * kRounding) << "depths are rounded outward";
-  EXPECT_TRUE(daemon->told("topic-heard", {"'eye'", "/cam/image"})) << daemon->output();
+  EXPECT_TRUE(daemon->tells("topic-heard", {"'eye'", "/cam/image"})) << daemon->output();
 }
 
 // A sphere beside the axis: its surface is nearer than that of the wall.

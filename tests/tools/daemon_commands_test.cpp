@@ -59,8 +59,7 @@ class DaemonCommands : public testing::Test {
   }
   // The log has a line about a refusal with this status, name or field.
   testing::AssertionResult logged_refusal(const std::vector<std::string>& names) {
-    if (eventually([&] { return daemon->told("command-refused", names); }))
-      return testing::AssertionSuccess();
+    if (daemon->tells("command-refused", names)) return testing::AssertionSuccess();
     return testing::AssertionFailure() << daemon->output();
   }
   // No cycle is missing among the reports that come in this time.
@@ -289,7 +288,7 @@ TEST_F(DaemonCommands, ThatAreCutOffAreCountedAndTheNextOneIsDone) {
     })) << size
         << daemon->output();
   }
-  EXPECT_TRUE(daemon->told("undecodable")) << daemon->output();
+  EXPECT_TRUE(daemon->tells("undecodable")) << daemon->output();
   EXPECT_EQ(planner->find(command.request), nullptr);
   const CommandResult result = planner->result_of(command);
   EXPECT_TRUE(result.done()) << result.reason;
@@ -347,7 +346,7 @@ TEST_F(DaemonCommands, AtTenKilohertzAreAnsweredOrRefusedAsBusyAndNoTickIsMissin
   }
   EXPECT_GT(done, 0u);
   EXPECT_TRUE(logged_refusal({"planner", "busy"}));
-  EXPECT_TRUE(daemon->told("commands-left-out")) << daemon->output();
+  EXPECT_TRUE(daemon->tells("commands-left-out")) << daemon->output();
   EXPECT_TRUE(eventually([&] { return planner->result_of({SetMargin{"floor", 0.6}}).done(); }));
 }
 
@@ -368,8 +367,7 @@ TEST_F(DaemonCommands, ThatWereAcceptedAreResumedAfterAKill) {
     const auto report = distances.next();
     return report != nullptr && (*report)->scene_revision == result.scene_revision;
   }));
-  EXPECT_TRUE(eventually([&] { return daemon->told("scene-resumed", {"scene.yaml"}); }))
-      << daemon->output();
+  EXPECT_TRUE(daemon->tells("scene-resumed", {"scene.yaml"})) << daemon->output();
   daemon->signal(SIGTERM);
   EXPECT_EQ(daemon->wait(), 0) << daemon->output();
   write_text(cell.path(), commanded_cell("commands") + "# changed\n");

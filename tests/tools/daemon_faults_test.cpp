@@ -81,8 +81,8 @@ TEST(TwoDaemons, TheSecondYieldsAndTheFirstGoesOn) {
 
   ChildProcess second(test::kDaemon, arguments);
   EXPECT_EQ(second.wait(), 4) << second.output();
-  EXPECT_TRUE(second.told("other-daemon-first")) << second.output();
-  EXPECT_TRUE(eventually([&] { return first.told("other-daemon-later"); })) << first.output();
+  EXPECT_TRUE(second.tells("other-daemon-first")) << second.output();
+  EXPECT_TRUE(first.tells("other-daemon-later")) << first.output();
 
   // Until the second daemon detected the first, clients received reports of both and could
   // distinguish them.
@@ -99,8 +99,7 @@ TEST(TwoDaemons, TheSecondYieldsAndTheFirstGoesOn) {
   });
   EXPECT_TRUE(went_on);
   EXPECT_LE(cycle_of.size(), 2u);
-  EXPECT_TRUE(eventually([&] { return first.told("other-writer-left", {"clearance/distances"}); }))
-      << first.output();
+  EXPECT_TRUE(first.tells("other-writer-left", {"clearance/distances"})) << first.output();
   first.signal(SIGTERM);
   EXPECT_EQ(first.wait(), 0) << first.output();
 }
@@ -131,7 +130,7 @@ TEST(TwoDaemons, AnotherProgramOnTheTopicIsNamedAndCountedInHealth) {
     return test::take_next(health, sample) && sample->foreign_reports > 0;
   })) << daemon.output();
   EXPECT_NE(sample->daemon, 0u);
-  EXPECT_TRUE(daemon.told("other-program")) << daemon.output();
+  EXPECT_TRUE(daemon.tells("other-program")) << daemon.output();
   daemon.signal(SIGTERM);
   EXPECT_EQ(daemon.wait(), 0) << "it goes on: " << daemon.output();
 }

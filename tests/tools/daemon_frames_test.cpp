@@ -121,7 +121,7 @@ TEST_F(DaemonFrames, ThatAreMissingAreNamedWithThoseThatThereAre) {
       },
       told("frame-found", {"'box_link'", "box"})))
       << daemon->output();
-  EXPECT_TRUE(daemon->told("frame-moved", {"'a'", "'map'", "'box_link'"}));
+  EXPECT_TRUE(daemon->tells("frame-moved", {"'a'", "'map'", "'box_link'"}));
 }
 
 TEST_F(DaemonFrames, OfTwoPublishersAndOfAnotherClockAreNamed) {

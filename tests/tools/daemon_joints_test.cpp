@@ -100,7 +100,7 @@ TEST_F(DaemonJoints, OfAPublisherThatSendsZerosMakeTheLinksUnknownAndAreNamed) {
       told("two-joint-sources", {"arm", "'/joint_states'", "'/joint_states#2'"})))
       << daemon->output();
   EXPECT_FALSE(is("finger", PairStatus::kConverged));
-  EXPECT_TRUE(daemon->told("refused", {"joint elbow", "another source contradicts"}))
+  EXPECT_TRUE(daemon->tells("refused", {"joint elbow", "another source contradicts"}))
       << daemon->output();
   // The driver ends. What the other one sends is used when the joints can have got there.
   EXPECT_TRUE(step_until(
@@ -167,7 +167,7 @@ TEST_F(DaemonJoints, ThatAJointCannotHaveAreRefusedAndItsLinksUnknownOrWide) {
   // The shoulder rotates at 2 rad/s at most, which is 0.4 rad in an age limit.
   EXPECT_TRUE(step_until(5, sent(joints, {2.9, 0.0, 0.1}), told("joints-contradict", {"arm"})))
       << daemon->output();
-  EXPECT_TRUE(daemon->told("refused", {"joint shoulder"})) << daemon->output();
+  EXPECT_TRUE(daemon->tells("refused", {"joint shoulder"})) << daemon->output();
   EXPECT_FALSE(is("upper", PairStatus::kConverged));
 }
 
@@ -283,8 +283,8 @@ TEST_F(DaemonJoints, OfARobotNeedNoCellFile) {
     std::this_thread::sleep_for(std::chrono::milliseconds(5));
     return hears_joints();
   })) << daemon->output();
-  EXPECT_TRUE(daemon->told("how-to-reach", {"in partition " + dds.partition})) << daemon->output();
-  EXPECT_TRUE(daemon->told("robot-note", {"scara", neighbours})) << daemon->output();
+  EXPECT_TRUE(daemon->tells("how-to-reach", {"in partition " + dds.partition})) << daemon->output();
+  EXPECT_TRUE(daemon->tells("robot-note", {"scara", neighbours})) << daemon->output();
 }
 
 TEST_F(DaemonJoints, OfARobotWithoutACellFileMayHaveATopicOfAnyName) {
@@ -318,7 +318,7 @@ TEST_F(DaemonJoints, OfADescriptionThatRos2PublishesNeedNoFileAtAll) {
     return hears_joints();
   })) << daemon->output();
   EXPECT_TRUE(
-      daemon->told("description-kept", {(folder / "cache/clearance/robot_description_").string()}))
+      daemon->tells("description-kept", {(folder / "cache/clearance/robot_description_").string()}))
       << daemon->output();
 }
 

@@ -339,7 +339,7 @@ TEST_F(DaemonMoveIt, ThatIsCutOffIsCountedAndRefusedAndTheNextOneCounts) {
     cut->send();
     EXPECT_TRUE(is_counted_as_undecodable(++sent)) << size << daemon->output();
   }
-  EXPECT_TRUE(daemon->told("undecodable")) << daemon->output();
+  EXPECT_TRUE(daemon->tells("undecodable")) << daemon->output();
   EXPECT_EQ(report->scene_revision, scene.revision);
   send(sphere_object("ball", "map", {4, 0, 0}));
   EXPECT_TRUE(comes("ball", "finger", 4 - 0.1 - 2.15)) << daemon->output();
@@ -353,7 +353,7 @@ TEST_F(DaemonMoveIt, WithAFaultIsNamedByItsFieldAndTheRestCounts) {
   send(message);
   EXPECT_TRUE(comes("ball", "finger", 4 - 0.1 - 2.15)) << daemon->output();
   EXPECT_TRUE(
-      daemon->told("moveit-left-out", {"world.collision_objects[0].header.frame_id", "'moon'"}))
+      daemon->tells("moveit-left-out", {"world.collision_objects[0].header.frame_id", "'moon'"}))
       << daemon->output();
 }
 

@@ -81,7 +81,7 @@ TEST_F(DaemonPeople, AreUnknownWhileTheirSkeletonOrTheListIsSilent) {
   EXPECT_TRUE(step_until(
       20, [] {}, [&] { return is("torso_one", kUnknown) && is("torso_two", kUnknown); }))
       << daemon->output();
-  EXPECT_TRUE(daemon->told("bodies-silent"));
+  EXPECT_TRUE(daemon->tells("bodies-silent"));
   EXPECT_TRUE(become({"b1"}, {"b1"}, kKnown, kAbsent));
 }
 
@@ -134,7 +134,7 @@ TEST(PeopleInShares, AreUnknownWhileNoDaemonOfTheFirstShareIsThere) {
   first->signal(SIGKILL);
   first->wait();
   EXPECT_TRUE(last_is("zone-unknown")) << second->output();
-  EXPECT_TRUE(second->told("share-alone", {"'first'"})) << second->output();
+  EXPECT_TRUE(second->tells("share-alone", {"'first'"})) << second->output();
   first = share("first");
   EXPECT_TRUE(last_is("zone-left")) << first->output() << second->output();
 }

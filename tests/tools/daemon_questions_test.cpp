@@ -178,7 +178,7 @@ TEST_F(DaemonQuestions, WithInputsThatAreMissingLateOrMovingAreNeverFree) {
     return result && result->reason.find("elbow") != std::string::npos &&
            result->reason.find("moves") != std::string::npos;
   }));
-  EXPECT_TRUE(eventually([&] { return daemon->told("question-refused", {"no-input"}); }));
+  EXPECT_TRUE(daemon->tells("question-refused", {"no-input"}));
   // A question needs no input for things that it states.
   Question stated = swing(-1.0, -0.9);
   stated.held = {{"elbow", 0.0}, {"push", 0.0}};
@@ -364,9 +364,7 @@ TEST_F(DaemonQuestions, AtTenKilohertzAreAnsweredOrRefusedAsBusyAndNoTickIsMissi
     (result->done() ? answered : busy) += 1;
   }
   EXPECT_GT(answered + busy, 0u);
-  EXPECT_TRUE(eventually([&] {
-    return daemon->told("question-refused", {"planner", "busy"});
-  })) << daemon->output();
+  EXPECT_TRUE(daemon->tells("question-refused", {"planner", "busy"})) << daemon->output();
   EXPECT_TRUE(answer_of(flooding, swing(-1.0, 0.6)).done());
 }
 

@@ -65,7 +65,7 @@ class RecordingDaemon : public testing::Test {
   // The consequences that every fault of the file must have.
   void expect_told(const std::string& what) {
     EXPECT_TRUE(health_says(what)) << daemon->output();
-    EXPECT_TRUE(eventually([&] { return daemon->told("recording-stopped"); }));
+    EXPECT_TRUE(daemon->tells("recording-stopped"));
     EXPECT_THAT(daemon->output(), HasSubstr(what));
     daemon->signal(SIGTERM);
     EXPECT_EQ(5, daemon->wait()) << daemon->output();
@@ -132,7 +132,7 @@ TEST_F(RecordingDaemon, StartsAgainAfterACrashAndKeepsWhatWasRecorded) {
   daemon->wait();
   start();
   EXPECT_TRUE(health_says("recording " + path("run-2.mcap"))) << daemon->output();
-  EXPECT_TRUE(daemon->told("recording-renamed", {path("run.mcap"), path("run-2.mcap")}));
+  EXPECT_TRUE(daemon->tells("recording-renamed", {path("run.mcap"), path("run-2.mcap")}));
   daemon->signal(SIGTERM);
   EXPECT_EQ(0, daemon->wait()) << daemon->output();
   std::string output;
@@ -202,7 +202,7 @@ TEST_F(RecordingDaemon, PublishesAndEndsWithADiskThatHangs) {
   expect_reports(200);
   daemon->signal(SIGTERM);
   EXPECT_EQ(5, daemon->wait(std::chrono::seconds(20))) << daemon->output();
-  EXPECT_TRUE(daemon->told("disk-hangs")) << daemon->output();
+  EXPECT_TRUE(daemon->tells("disk-hangs")) << daemon->output();
   EXPECT_THAT(daemon->output(), HasSubstr("recording INCOMPLETE"));
   EXPECT_THAT(daemon->output(), HasSubstr(" 0 reports dropped"));
 }
@@ -223,7 +223,7 @@ TEST_F(FastRecordingDaemon, CountsWhatADiskIsTooSlowFor) {
   start_on_a_disk_that_may_hang();
   write_text(folder / "hang", "");
   EXPECT_TRUE(health_says("recording " + path("run.mcap"), 1)) << daemon->output();
-  EXPECT_TRUE(eventually([&] { return daemon->told("disk-too-slow"); }));
+  EXPECT_TRUE(daemon->tells("disk-too-slow"));
   std::filesystem::remove(folder / "hang");
   daemon->signal(SIGTERM);
   EXPECT_EQ(5, daemon->wait()) << daemon->output();
@@ -273,7 +273,7 @@ class EventRecordingDaemon : public RecordingDaemon {
 TEST_F(EventRecordingDaemon, WritesAFileForARobotThatFallsSilent) {
   start_by_event("0.5");
   let_a_robot_fall_silent();
-  ASSERT_TRUE(eventually([&] { return daemon->told("event-recorded"); })) << daemon->output();
+  ASSERT_TRUE(daemon->tells("event-recorded")) << daemon->output();
   daemon->signal(SIGTERM);
   EXPECT_EQ(0, daemon->wait()) << daemon->output();
   EXPECT_FALSE(std::filesystem::exists(folder / "run.mcap"));
@@ -289,7 +289,7 @@ TEST_F(EventRecordingDaemon, WritesAFileForARobotThatFallsSilent) {
 TEST_F(EventRecordingDaemon, LeavesWhatWasRecordedWhenItIsKilledInBetween) {
   start_by_event("30");
   let_a_robot_fall_silent();
-  ASSERT_TRUE(eventually([&] { return daemon->told("event-recorded"); })) << daemon->output();
+  ASSERT_TRUE(daemon->tells("event-recorded")) << daemon->output();
   ASSERT_TRUE(eventually([&] { return !files().empty() && size(files()[0]) > 50'000; }));
   daemon->signal(SIGKILL);
   daemon->wait();

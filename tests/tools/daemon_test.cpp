@@ -127,10 +127,10 @@ TEST(Daemon, EndsWithStatusZeroAndASummaryOnEitherSignal) {
   for (const int signal : {SIGTERM, SIGINT}) {
     ChildProcess daemon(test::kDaemon,
                         test::with({cell.path()}, test::dds_arguments(test::own_dds())));
-    ASSERT_TRUE(eventually([&] { return daemon.told("started", {"'small'"}); })) << daemon.output();
+    ASSERT_TRUE(daemon.tells("started", {"'small'"})) << daemon.output();
     daemon.signal(signal);
     EXPECT_EQ(daemon.wait(), 0) << daemon.output();
-    EXPECT_TRUE(daemon.told("stopped", {" tick"})) << daemon.output();
+    EXPECT_TRUE(daemon.tells("stopped", {" tick"})) << daemon.output();
     EXPECT_TRUE(daemon.wrote(" reports dropped")) << daemon.output();
     EXPECT_TRUE(daemon.wrote("minimum  none")) << daemon.output();
   }
@@ -147,7 +147,7 @@ TEST(Daemon, SaysWhyAZoneWasEntered) {
   Participant client(dds);
   test::Poses poses(client, read);
   ChildProcess daemon(test::kDaemon, test::with({cell.path()}, test::dds_arguments(dds)));
-  EXPECT_TRUE(eventually([&] { return daemon.told("zone-unknown", {"'near'", "left - right"}); }));
+  EXPECT_TRUE(daemon.tells("zone-unknown", {"'near'", "left - right"}));
   // The poses are sent repeatedly, because the bodies may have moved a few milliseconds after a
   // pose.
   EXPECT_TRUE(eventually([&] {
@@ -167,9 +167,7 @@ TEST(Daemon, SaysOnceThatASourceIsSlowerThanTheAgeLimit) {
   const auto dds = test::dds_arguments(test::own_dds());
   ChildProcess daemon(test::kDaemon, test::with({cell.path()}, dds));
   ChildProcess robot(test::kRobot, test::with({cell.path(), "--rate", "20"}, dds));
-  EXPECT_TRUE(eventually([&] {
-    return daemon.told("slow-input", {"20 ms", "age_limit_ms of 1"});
-  })) << daemon.output();
+  EXPECT_TRUE(daemon.tells("slow-input", {"20 ms", "age_limit_ms of 1"})) << daemon.output();
 }
 
 TEST(Daemon, EndsByItselfAfterTheTicksAskedFor) {
@@ -312,7 +310,7 @@ TEST(Daemon, JoinsTheDomainOfRosUnlessAnOptionOrTheCellStatesOne) {
     line.insert(line.end(), options.begin(), options.end());
     ChildProcess daemon(test::kDaemon, line, {.environment = {{"ROS_DOMAIN_ID", of_ros}}});
     EXPECT_EQ(daemon.wait(), 0) << daemon.output();
-    EXPECT_TRUE(daemon.told("started", {"on domain " + domain})) << daemon.output();
+    EXPECT_TRUE(daemon.tells("started", {"on domain " + domain})) << daemon.output();
   };
   started(silent, id, {}, id + " (of ROS_DOMAIN_ID), ");
   started(stated, other, {}, id + ", ");

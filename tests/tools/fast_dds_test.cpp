@@ -84,7 +84,7 @@ TEST_F(FastDds, JointStatesPlaceTheRobotAndReportsComeBackAsMessages) {
       return each["name"] == "clearance fast: joints of arm" && each["level"] == 0;
     });
   }));
-  EXPECT_TRUE(daemon->told("joints-heard", {"arm"}));
+  EXPECT_TRUE(daemon->tells("joints-heard", {"arm"}));
 }
 
 }  // namespace

@@ -176,7 +176,7 @@ TEST_F(InterventionsOfADaemon, WhoseEndWasCutOffLackTheHashThatTheDaemonsLogTold
   start();
   stop();
   const std::string told = lines("stop").back()["hash"];
-  EXPECT_TRUE(daemon->told("interventions", {told})) << daemon->output();
+  EXPECT_TRUE(daemon->tells("interventions", {told})) << daemon->output();
   EXPECT_EQ(run(kReplay, {"log", log, "--holds", told}), 0) << output;
   std::string text = read_text(log);
   text.erase(text.rfind('\n', text.size() - 2) + 1);
@@ -192,7 +192,7 @@ TEST_F(InterventionsOfADaemon, WhoseEndWasCutOffLackTheHashThatTheDaemonsLogTold
   EXPECT_EQ(run(kReplay, {"log", log}), 1);
   EXPECT_THAT(output, HasSubstr("line 1 has not the hash that it states"));
   start();
-  EXPECT_TRUE(eventually([&] { return daemon->told("interventions-broken", {"line 1"}); }));
+  EXPECT_TRUE(daemon->tells("interventions-broken", {"line 1"}));
   stop();
 }
 

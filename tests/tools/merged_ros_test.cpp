@@ -122,7 +122,7 @@ TEST_F(MergedForRos, AChangedCellIsReadAgain) {
                                      "rt/clearance/monitored_planning_scene");
   start_joined();
   ASSERT_NE(scenes.next(), nullptr) << merge->output();
-  ASSERT_TRUE(eventually([&] { return merge->told("share-heard", {"right floor"}); }));
+  ASSERT_TRUE(merge->tells("share-heard", {"right floor"}));
   client::Commands commands(connection, "planner");
   const auto moved =
       commands.send({SetZoneThresholds{.zone = "near", .enter_below = 0.2, .leave_above = 0.25}});
@@ -149,8 +149,7 @@ TEST_F(MergedForRos, ACellThatCannotBeReadThereIsToldByName) {
   changed.replace(changed.find(box), box.size(), "mesh: {file: wedge.obj}");
   write_text(file.path(), changed);
   for (const auto& [name, daemon] : daemons) daemon->signal(SIGHUP);
-  EXPECT_TRUE(eventually([&] { return merge->told("cell-not-read", {"wedge"}); }))
-      << merge->output() << logs();
+  EXPECT_TRUE(merge->tells("cell-not-read", {"wedge"})) << merge->output() << logs();
   merge->signal(SIGTERM);
   EXPECT_EQ(merge->wait(), 0) << merge->output();
 }

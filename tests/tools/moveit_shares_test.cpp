@@ -238,7 +238,7 @@ TEST_F(MoveItSharedCells, FollowCommandsAndMessagesThatComeAtOnce) {
 TEST_F(MoveItSharedCells, GoOnWhereALeadingPartnerOfTheFirstShareIsKilled) {
   start_whole({"--partner", "one"});
   ChildProcess& second = start("boxes", {"--partner", "two"}, "second");
-  ASSERT_TRUE(eventually([&] { return second.told("partner-agrees"); })) << logs();
+  ASSERT_TRUE(second.tells("partner-agrees")) << logs();
   const Writer object = writer_of(sphere("a0"));
   object->send();
   ASSERT_TRUE(are_whole_with({"a0"})) << logs();

@@ -84,7 +84,7 @@ TEST(Network, LargeReportsAreNeverIpFragmentsAndSurviveLoss) {
   panel.run([&] { watch.emplace(test::kWatch, test::with({"--plain"}, arguments)); });
   ASSERT_TRUE(eventually([&] { return watch->wrote("cycle "); }))
       << daemon->output() << watch->output();
-  EXPECT_TRUE(daemon->told("started", {"interface eth0", "1400 B"})) << daemon->output();
+  EXPECT_TRUE(daemon->tells("started", {"interface eth0", "1400 B"})) << daemon->output();
 
   wire.lose(0.1);
   const std::uint64_t before = wire.frames();
@@ -324,7 +324,7 @@ TEST(Network, OfEveryProgramWithoutAConfigurationIsTheDefaultInterface) {
   bool came = false;
   panel.run([&] { came = hears_health_by_default(kDomain); });
   EXPECT_TRUE(came) << daemon->output();
-  EXPECT_TRUE(daemon->told("how-to-reach", {"every program without a configuration"}))
+  EXPECT_TRUE(daemon->tells("how-to-reach", {"every program without a configuration"}))
       << daemon->output();
   daemon->signal(SIGTERM);
   EXPECT_EQ(daemon->wait(), 0) << daemon->output();
@@ -344,7 +344,7 @@ TEST(Network, OfCyclonesOwnVariableIsJoined) {
   EXPECT_TRUE(eventually([&] { return friendly.wrote("cycle "); }))
       << daemon.output() << friendly.output();
   EXPECT_FALSE(stranger.wrote("cycle ")) << stranger.output();
-  EXPECT_TRUE(daemon.told("started", {", then CYCLONEDDS_URI"})) << daemon.output();
+  EXPECT_TRUE(daemon.tells("started", {", then CYCLONEDDS_URI"})) << daemon.output();
   daemon.signal(SIGTERM);
   EXPECT_EQ(daemon.wait(), 0) << daemon.output();
 }

@@ -44,7 +44,7 @@ TEST(PartnersOnANetwork, BothHalvesOfACutGoOnAndAgreeAfterwards) {
     robot.emplace(dds, cell);
     left.emplace(kDaemon, test::with(arguments, {"left"}));
   });
-  ASSERT_TRUE(eventually([&] { return left->told("partner-stands", {"leading"}); }));
+  ASSERT_TRUE(left->tells("partner-stands", {"leading"}));
   other.run([&] { right.emplace(kDaemon, test::with(arguments, {"right"})); });
   const auto agreements = [](const ChildProcess& daemon) {
     const std::string text = daemon.output();
@@ -56,8 +56,7 @@ TEST(PartnersOnANetwork, BothHalvesOfACutGoOnAndAgreeAfterwards) {
   ASSERT_TRUE(eventually([&] { return agreements(*left) > 0 && agreements(*right) > 0; }))
       << left->output() << right->output();
   wire.lose(1.0);
-  ASSERT_TRUE(eventually([&] { return right->told("partner-stands", {"leading"}); }))
-      << right->output();
+  ASSERT_TRUE(right->tells("partner-stands", {"leading"})) << right->output();
   const int before = agreements(*right);
   wire.lose(0.0);
   EXPECT_TRUE(eventually([&] { return agreements(*right) > before; }))
@@ -97,7 +96,7 @@ TEST(PartnersOnANetwork, RandomCutsOfTheLinkLoseNoCycleAndForgetNoZone) {
     robot.emplace(dds, cell);
     left.emplace(kDaemon, test::with(arguments, {"left"}));
   });
-  ASSERT_TRUE(eventually([&] { return left->told("partner-stands", {"leading"}); }));
+  ASSERT_TRUE(left->tells("partner-stands", {"leading"}));
   other.run([&] { right.emplace(kDaemon, test::with(arguments, {"right"})); });
   one.run([&] {
     client::Connection connection(dds, cell.topics);

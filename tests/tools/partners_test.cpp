@@ -128,9 +128,9 @@ TEST_F(Partners, OneStreamGoesOnWhileOneOfThemIsKilledAndComesBack) {
     EXPECT_TRUE(agree()) << logs();
   }
   EXPECT_EQ(states[PartnerState::kDifferent], 0);
-  EXPECT_TRUE(daemons["left"]->told("partner-agrees", {"right"})) << logs();
-  EXPECT_TRUE(daemons["right"]->told("partner-agrees", {"left"})) << logs();
-  EXPECT_TRUE(daemons["left"]->told("partner-met", {"right"})) << logs();
+  EXPECT_TRUE(daemons["left"]->tells("partner-agrees", {"right"})) << logs();
+  EXPECT_TRUE(daemons["right"]->tells("partner-agrees", {"left"})) << logs();
+  EXPECT_TRUE(daemons["left"]->tells("partner-met", {"right"})) << logs();
 }
 
 // Two cells that differ in the names of their daemons only.
@@ -149,12 +149,12 @@ TEST_F(Partners, MayBeNamedByTheirCells) {
   ASSERT_TRUE(read_until([this] { return came > 20; })) << logs();
   begin("right", right);
   EXPECT_TRUE(agree()) << logs();
-  EXPECT_TRUE(daemons["left"]->told("partner-agrees", {"right"})) << logs();
+  EXPECT_TRUE(daemons["left"]->tells("partner-agrees", {"right"})) << logs();
   daemons["right"]->signal(SIGTERM);
   EXPECT_TRUE(read_until([this] { return states[PartnerState::kMissing] > 20; })) << logs();
   begin("other", left, {"--partner", "other"});
   EXPECT_TRUE(agree()) << logs() << "the option overrides the cell";
-  EXPECT_TRUE(daemons["left"]->told("partner-met", {"other"})) << logs();
+  EXPECT_TRUE(daemons["left"]->tells("partner-met", {"other"})) << logs();
 }
 
 // Both record from their starts. What each ticked before it joined, and while it was apart, rests
@@ -207,7 +207,7 @@ TEST_F(Partners, AStoppedLeaderIsMissedAndAgreesAgain) {
   EXPECT_TRUE(read_until([this] { return states[PartnerState::kMissing] > 60; })) << logs();
   daemons["left"]->signal(SIGCONT);
   EXPECT_TRUE(agree()) << logs();
-  EXPECT_TRUE(daemons["right"]->told("partner-missing", {"left"})) << logs();
+  EXPECT_TRUE(daemons["right"]->tells("partner-missing", {"left"})) << logs();
 }
 
 // Each of them ends with status 4 and the cause, and the others go on as before.
@@ -217,7 +217,7 @@ TEST_F(Partners, AThirdOneOneOfTheSameNameAndADaemonThatIsNoneAreExcluded) {
                        test::with(test::with({file.path()}, test::dds_arguments(dds)), more));
     ASSERT_TRUE(read_until([&] { return !extra.running(); })) << extra.output() << logs();
     EXPECT_EQ(extra.wait(), 4) << extra.output();
-    EXPECT_TRUE(extra.told("other-daemon-first")) << extra.output();
+    EXPECT_TRUE(extra.tells("other-daemon-first")) << extra.output();
     for (const auto& [name, daemon] : daemons) EXPECT_TRUE(daemon->running()) << logs();
   };
   start("left");
@@ -236,7 +236,7 @@ TEST_F(Partners, AThirdOneOneOfTheSameNameAndADaemonThatIsNoneAreExcluded) {
   SCOPED_TRACE("no partner");
   is_excluded({});
   EXPECT_TRUE(agree()) << logs();
-  EXPECT_TRUE(daemons["left"]->told("other-daemon-later")) << logs();
+  EXPECT_TRUE(daemons["left"]->tells("other-daemon-later")) << logs();
 }
 
 }  // namespace

@@ -98,7 +98,7 @@ class RosDiscoveryNetwork : public testing::Test {
           test::with({folder / "cell.yaml", "--domain", std::to_string(kDomain)}, arguments),
           test::ChildOptions{.environment = variables});
     });
-    ASSERT_TRUE(eventually([&] { return daemon->told("how-to-reach"); })) << daemon->output();
+    ASSERT_TRUE(daemon->tells("how-to-reach")) << daemon->output();
   }
   static bool hears(test::NetworkNamespace& machine, const std::string& settings) {
     bool came = false;
@@ -147,15 +147,15 @@ TEST_F(RosDiscoveryNetwork, WhereRosIsSetUpTheDaemonMeetsEveryNodeOfItsMachine) 
     EXPECT_TRUE(hears(here, node)) << node << '\n' << daemon->output();
   EXPECT_TRUE(hears(there, kSubnet)) << daemon->output();
   EXPECT_TRUE(hears(here, domain_configuration({.interface = "lo"}))) << "a client elsewhere on lo";
-  EXPECT_TRUE(daemon->told("how-to-reach",
-                           {"every ROS 2 node of this machine on rmw_cyclonedds or rmw_fastrtps"}))
+  EXPECT_TRUE(daemon->tells("how-to-reach",
+                            {"every ROS 2 node of this machine on rmw_cyclonedds or rmw_fastrtps"}))
       << daemon->output();
 }
 
 TEST_F(RosDiscoveryNetwork, BesideHumbleTheDaemonMeetsNodesAndSaysThatItIsNone) {
   start({{"ROS_DISTRO", "humble"}});
   EXPECT_TRUE(hears(here, kHumbleLocalhost)) << daemon->output();
-  EXPECT_TRUE(daemon->told("how-to-reach", {"not a node of ROS 2: ROS_DISTRO is humble, "}))
+  EXPECT_TRUE(daemon->tells("how-to-reach", {"not a node of ROS 2: ROS_DISTRO is humble, "}))
       << daemon->output();
 }
 
@@ -165,7 +165,7 @@ TEST_F(RosDiscoveryNetwork, TheVariablesForThisMachineMeanWhatTheyMeanForNodes) 
     start(variables);
     for (const std::string& node : {kLocalhost, kHumbleLocalhost})
       EXPECT_TRUE(hears(here, node)) << node << '\n' << daemon->output();
-    EXPECT_TRUE(daemon->told("how-to-reach", {"programs of this machine reach it with"}))
+    EXPECT_TRUE(daemon->tells("how-to-reach", {"programs of this machine reach it with"}))
         << daemon->output();
   }
 }
@@ -189,7 +189,7 @@ TEST_F(RosDiscoveryNetwork, ADaemonOnLoMeetsANodeOfHumbleOnFastDds) {
   if (!std::filesystem::exists(kFastDds)) GTEST_SKIP() << "Fast DDS is not installed";
   start({});
   EXPECT_TRUE(meets_fast_dds(here, "humble")) << daemon->output();
-  EXPECT_TRUE(daemon->told(
+  EXPECT_TRUE(daemon->tells(
       "how-to-reach",
       {"No other node on rmw_fastrtps reaches it: start clearanced with --interface ros"}))
       << daemon->output();
@@ -234,8 +234,8 @@ TEST_F(RosDiscoveryNetwork, TheProposedSettingsReachADaemonOnLoopback) {
   here.run([&] {
     EXPECT_LT(dds_create_domain(kDomain, (kHumbleLocalhost + "," + proposed()).c_str()), 0);
   });
-  EXPECT_TRUE(daemon->told("how-to-reach", {"Humble with ROS_LOCALHOST_ONLY=1 reach it without "
-                                            "this, and on rmw_cyclonedds terminate with it"}))
+  EXPECT_TRUE(daemon->tells("how-to-reach", {"Humble with ROS_LOCALHOST_ONLY=1 reach it without "
+                                             "this, and on rmw_cyclonedds terminate with it"}))
       << daemon->output();
 }
 

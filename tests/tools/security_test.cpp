@@ -99,7 +99,7 @@ TEST_F(Security, EveryRightfulProgramIsHeardAndAnswered) {
   start_daemon();
   start_robot();
   expect_the_truth();
-  EXPECT_TRUE(daemon->told("started", {"with DDS Security"})) << daemon->output();
+  EXPECT_TRUE(daemon->tells("started", {"with DDS Security"})) << daemon->output();
   {
     Joined planner(dds, own("planner"));
     client::Questions questions(planner.connection(), "planner");

@@ -118,7 +118,7 @@ TEST_F(ShareBalance, IsThatOfTheLastCellWhereTheDaemonWasStartedAgainWithAnother
   const auto record = [&](const char* cell, const char* file) {
     ChildProcess daemon(kDaemon,
                         with({path(cell), "--record", path(file)}, dds_arguments(own_dds())));
-    ASSERT_TRUE(eventually([&] { return daemon.told("started"); })) << daemon.output();
+    ASSERT_TRUE(daemon.tells("started")) << daemon.output();
     std::this_thread::sleep_for(std::chrono::milliseconds(200));
     daemon.signal(SIGTERM);
     EXPECT_EQ(0, daemon.wait()) << daemon.output();

@@ -108,7 +108,7 @@ TEST_F(SharedCells, DaemonsOfDifferentOnesAreNoRivalsAndTwoOfTheSameAre) {
   ASSERT_TRUE(read_until(whole, [&] { return whole.is_whole(); })) << logs();
   ChildProcess& second = start("boxes", {}, "second");
   EXPECT_EQ(second.wait(), 4) << second.output();
-  EXPECT_TRUE(second.told("other-daemon-first")) << second.output();
+  EXPECT_TRUE(second.tells("other-daemon-first")) << second.output();
   EXPECT_TRUE(read_until(whole, [&] { return whole.is_whole(); })) << logs();
   for (const Share& share : cell.shares.all) EXPECT_TRUE(daemons[share.name]->running());
 }
@@ -118,7 +118,7 @@ TEST_F(SharedCells, PartnersOfAShareLoseNoCycleWhenOneIsKilled) {
   client::SharedCell whole(connection, {.late_after = milliseconds(500)});
   ASSERT_TRUE(read_until(whole, [&] { return whole.is_whole(); })) << logs();
   ChildProcess& second = start("boxes", {"--partner", "two"}, "second");
-  ASSERT_TRUE(test::eventually([&] { return second.told("partner-agrees"); })) << logs();
+  ASSERT_TRUE(second.tells("partner-agrees")) << logs();
   read_until(
       whole, [] { return false; }, 1);
   const std::uint64_t missed = whole.missed();
@@ -145,7 +145,7 @@ TEST_F(SharedCellsOfPartners, MayBeNamedByTheCell) {
   client::SharedCell whole(connection, {.late_after = milliseconds(500)});
   ASSERT_TRUE(read_until(whole, [&] { return whole.is_whole(); })) << logs();
   ChildProcess& second = start("boxes", {"--partner", "two"}, "second");
-  EXPECT_TRUE(test::eventually([&] { return second.told("partner-agrees", {"one"}); })) << logs();
+  EXPECT_TRUE(second.tells("partner-agrees", {"one"})) << logs();
 }
 
 TEST_F(SharedCells, OfAnotherRevisionAreUnknownUntilTheyAgree) {

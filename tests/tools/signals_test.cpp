@@ -96,7 +96,7 @@ TEST_F(Signals, ThatMeanNothingEndNoDaemonAndAHangupReadsTheCellAgain) {
   ChildProcess daemon(test::kDaemon, arguments);
   distances.settle();
   for (const int number : {SIGUSR1, SIGUSR2, SIGALRM, SIGHUP}) daemon.signal(number);
-  EXPECT_TRUE(eventually([&] { return daemon.told("scene-unchanged"); })) << daemon.output();
+  EXPECT_TRUE(daemon.tells("scene-unchanged")) << daemon.output();
   EXPECT_TRUE(still_reports(distances));
   daemon.signal(SIGTERM);
   EXPECT_EQ(daemon.wait(), 0) << daemon.output();

@@ -113,7 +113,7 @@ TEST_P(SimulatedDaemons, CertifyDistancesAtTheSimulatedTimeThroughAPauseAndANewB
   const std::string file = (folder / "run.mcap").string();
   begin("", {"--use-sim-time", "--record", file});
   play_until_checked(150);
-  EXPECT_TRUE(daemon->told("sim-time-heard")) << daemon->output();
+  EXPECT_TRUE(daemon->tells("sim-time-heard")) << daemon->output();
   EXPECT_FALSE(daemon->told("other-clock")) << daemon->output();
 
   // A pause: the clock says the same time, nothing else is sent, and nothing ages.

@@ -67,12 +67,10 @@ class ViewOfPartners : public testing::Test {
 TEST_F(ViewOfPartners, ShowsOneStreamAndSaysWhichOneIsMissing) {
   ChildProcess robot(kRobot, with(arguments, {"--rate", "200"}));
   ChildProcess left(kDaemon, with(arguments, {"--partner", "left"}));
-  ASSERT_TRUE(eventually([&] { return left.told("partner-stands", {"leading"}); }))
-      << left.output();
+  ASSERT_TRUE(left.tells("partner-stands", {"leading"})) << left.output();
   std::optional<ChildProcess> right(std::in_place, kDaemon,
                                     with(arguments, {"--partner", "right"}));
-  ASSERT_TRUE(eventually([&] { return right->told("partner-agrees", {"left"}); }))
-      << right->output();
+  ASSERT_TRUE(right->tells("partner-agrees", {"left"})) << right->output();
   ChildProcess watch(test::kWatch, with({"--plain"}, dds_arguments(dds)));
   // All of them in a second, or a number of them on a slow machine.
   const std::string agree = "partners agree|[0-9]+ agree";

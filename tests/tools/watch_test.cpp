@@ -158,7 +158,7 @@ TEST(Watch, CallsNoStaleDistanceAMinimumAndSaysWhyAZoneIsActive) {
     poses.send(0.0);
     return daemon.told("zone-left", {"'near'"});
   }));
-  EXPECT_TRUE(eventually([&] { return daemon.told("zone-late", {"left"}); })) << daemon.output();
+  EXPECT_TRUE(daemon.tells("zone-late", {"left"})) << daemon.output();
   EXPECT_TRUE(eventually([&] {
     return watch.wrote("no minimum known, poses are late: least upper bound ") &&
            watch.wrote("zone near: poses of left are late");
@@ -193,7 +193,7 @@ TEST(Watch, ShowsAContactThatIsAllowedTooDeepEndedAndTooLate) {
       poses.send(0.0);
       return std::ranges::all_of(texts, [&](const auto& each) { return watch.wrote(each); });
     })) << watch.output();
-    EXPECT_TRUE(daemon.told(code, {"'stand'"})) << daemon.output();
+    EXPECT_TRUE(daemon.tells(code, {"'stand'"})) << daemon.output();
   };
   expect_at(-0.001, "contact-allowed",
             {"contact 'stand' allowed by planner: 1.0 of 2.0 mm deep, since cycle ",

@@ -122,7 +122,8 @@ class Arm {
       const std::int64_t stamp_ns = client::now_ns();
       joints_.write(positions, {}, stamp_ns);
       while (reports_.next(std::chrono::milliseconds(20))) {
-        if (reports_->unknown == 0)
+        // A late pair is bounded by where the arm may have gone since it was heard.
+        if (reports_->minimum_certified)
           result_.least_lower_m = std::min(result_.least_lower_m, reports_->lower_all);
         if (reports_->now_ns >= stamp_ns) return true;
       }

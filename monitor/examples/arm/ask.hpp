@@ -28,7 +28,7 @@ struct Jog {
 struct RunResult {
   bool heard = false;  // the daemon always answered
   int made = 0, slowed = 0, refused = 0;
-  double least_lower_m = 1e9;  // of the certified lower bounds in reports, of all pairs
+  double least_lower_m = 1e9;  // of the lower bounds of all pairs, in certified reports
 };
 
 // Runs the jogs of the operator once. Calls `show` for each. `go_on` is called before each joint

@@ -221,7 +221,8 @@ int ask_each(client::Connection& connection, const Arguments& arguments, StopSig
                          std::string(jog::kClient) + "\",");
   }
   print(stdout,
-        "{} jogs made, {} slowed, {} refused; the least distance in all reports is at least {:.4f} "
+        "{} jogs made, {} slowed, {} refused; the least distance in all certified reports is at "
+        "least {:.4f} "
         "m\n",
         result.made, result.slowed, result.refused, result.least_lower_m);
   return kOk;
