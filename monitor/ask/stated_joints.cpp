@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "config/scene/chain_rounding.hpp"
 #include "monitor/ask/posture.hpp"
 #include "monitor/bodies/joint_quaternion.hpp"
 #include "monitor/inputs/joint_batch.hpp"

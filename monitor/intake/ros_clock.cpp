@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "monitor/inputs/elapsed.hpp"
+
 namespace clearance {
 namespace {
 

@@ -6,6 +6,8 @@
 #include <utility>
 #include <vector>
 
+#include "config/yaml/quantity_nodes.hpp"
+#include "config/yaml/yaml_writer.hpp"
 #include "monitor/intake/message_translator.hpp"
 
 namespace clearance::moveit {
