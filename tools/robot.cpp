@@ -219,7 +219,12 @@ class Cameras {
  public:
   Cameras(const Cell& cell, client::Connection& connection, const Arguments& arguments,
           const JointMotion& motion, const SimulationTime& time) {
-    if (cell.scene.sensors.empty() || arguments.cameras.rate_hz == 0.0) return;
+    if (cell.scene.sensors.empty() || arguments.cameras.rate_hz == 0.0) {
+      if (arguments.truth || !arguments.people.empty())
+        log_text(LogLevel::kWarn,
+                 "--truth and --person do nothing: no camera of the cell is simulated");
+      return;
+    }
     if (const std::string fault = fault_of(cell, arguments.cameras); !fault.empty()) {
       log_text(LogLevel::kWarn, fmt::format("no camera is simulated: {}", fault));
       return;

@@ -77,7 +77,7 @@ std::optional<std::uint32_t> SimulationReader::read_object(const YamlNode& node)
         return stated.place == list_.places[index];
       })) {
     diagnostics_.add(node, fmt::format("found the attached object '{}'; expected one that is not "
-                                       "attached, since its carrier moves this one",
+                                       "attached, since its carrier moves this one: leave it out of the simulation",
                                        *name));
     return std::nullopt;
   }

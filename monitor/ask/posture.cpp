@@ -84,7 +84,7 @@ std::optional<std::string> Posture::take(const Question& question) {
   if (auto text = open_object(question)) return text;
   leave_out_absent_robots();
   if (auto text = open_joint()) return text;
-  if (auto text = slide_out_of_limits()) return text;
+  if (auto text = beyond_limits(question)) return text;
   free_carriers(question);
   note_free();
   place_bases();
@@ -98,7 +98,7 @@ std::optional<std::string> Posture::find_free(const std::string& name,
   if (at == object_named_.end()) return "the cell has no object \"" + name + "\"";
   object = at->second;
   if (scene_.objects[object].fixed || is_link(object)) {
-    return "object \"" + name + "\" is fixed or part of a robot: its pose is known";
+    return "object \"" + name + "\" is fixed, attached or part of a robot: leave its pose out";
   }
   if (present_[object] != 0) return "the pose of object \"" + name + "\" is stated twice";
   return std::nullopt;

@@ -130,7 +130,7 @@ class Posture {
   void note_free();
   void leave_out_absent_robots() noexcept;
   [[nodiscard]] std::optional<std::string> open_joint() const;
-  [[nodiscard]] std::optional<std::string> slide_out_of_limits() const;
+  [[nodiscard]] std::optional<std::string> beyond_limits(const Question& question) const;
   [[nodiscard]] std::optional<std::string> take_poses(const Question& question);
   [[nodiscard]] std::optional<std::string> take_motions(const Question& question);
   [[nodiscard]] std::optional<std::string> open_object(const Question& question);

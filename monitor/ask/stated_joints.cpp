@@ -114,22 +114,27 @@ std::optional<std::string> Posture::open_joint() const {
   return std::nullopt;
 }
 
-// The reaches of chains include the limits of sliding joints.
-std::optional<std::string> Posture::slide_out_of_limits() const {
-  const auto is_outside = [&](std::uint32_t v, double position) {
-    const JointVariable& limits = scene_.variables[v];
-    return std::abs(position) > kLargestLength ||
-           position < limits.lower - limits.limit_tolerance ||
-           position > limits.upper + limits.limit_tolerance;
-  };
+// The same limits as those of joint states. The reaches of chains include those of sliding joints,
+// which therefore count between waypoints, too. A stop may end beyond a limit of a turning joint.
+std::optional<std::string> Posture::beyond_limits(const Question& question) const {
+  const bool is_stop = !question.margins_by_pair.empty();
   for (std::uint32_t r = 0; r < scene_.robots.size(); ++r) {
     if (absent_robots_.is_left_out(r)) continue;
     for (const RobotJoint& joint : scene_.robots[r].joints) {
-      if (joint.type != JointType::kPrismatic) continue;
-      if (trajectory_.leaves(
-              joint.variable, [&](double p) { return is_outside(joint.variable, p); },
-              variables_[joint.variable].position)) {
-        return "joint \"" + scene_.variables[joint.variable].name + "\" slides out of its limits";
+      const bool slides = joint.type == JointType::kPrismatic;
+      if (is_stop && !slides) continue;
+      const std::uint32_t end = joint.variable + variables_of(joint.type);
+      for (std::uint32_t v = joint.variable; v < end; ++v) {
+        const JointVariable& limits = scene_.variables[v];
+        const auto is_outside = [&](double position) {
+          return (slides && std::abs(position) > kLargestLength) ||
+                 position < limits.lower - limits.limit_tolerance ||
+                 position > limits.upper + limits.limit_tolerance;
+        };
+        if (trajectory_.leaves(v, is_outside, variables_[v].position, slides)) {
+          return fmt::format("joint \"{}\" leaves its limits, {} to {} {}", limits.name,
+                             limits.lower, limits.upper, slides ? "m" : "rad");
+        }
       }
     }
   }

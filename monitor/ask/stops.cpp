@@ -343,11 +343,6 @@ void Stops::write(const Inputs& inputs, StoppingRobot& robot, Report& report,
   const MarginAnswer& decided = robot.answer.margins.front();
   out.scaling = out.share = 1.0;
   if (decided.verdict == Verdict::kFree) return;
-  for (const WatchedPair& pair : robot.pairs) {
-    const ObjectPair& of = scene_.pairs[pair.pair];
-    if (std::minmax(of.first, of.second) == std::minmax(decided.first, decided.second))
-      out.pair = pair.pair;
-  }
   out.share = std::clamp(decided.above_until / StoppingJoints::kDuration, 0.0, 1.0);
   out.scaling = largest_scaling(out.share, robot);
 }

@@ -84,17 +84,18 @@ class Trajectory {
     return {i, i, times_[i], times_.size() < 2 ? times_[i] : times_[i + 1]};
   }
   // Tells whether a variable has a position for which `is_outside` is true. `held` is its position
-  // if it has no waypoints. A cubic counts with its control points, between which it stays.
+  // if it has no waypoints. With `between` a cubic counts with its control points, between which it
+  // stays; without it waypoints count alone.
   template <class IsOutside>
-  [[nodiscard]] bool leaves(std::uint32_t variable, const IsOutside& is_outside,
-                            double held) const {
+  [[nodiscard]] bool leaves(std::uint32_t variable, const IsOutside& is_outside, double held,
+                            bool between) const {
     for (const Track& track : tracks_) {
       for (std::size_t joint = 0; joint < track.joints; ++joint) {
         if (moved_[track.first_joint + joint] != variable) continue;
         for (std::size_t row = 0; row < track.motion->times.size(); ++row) {
-          for (const double control : controls_beside(track, row, joint)) {
-            if (is_outside(control)) return true;
-          }
+          if (is_outside(track.position(row, joint))) return true;
+          if (between && std::ranges::any_of(controls_beside(track, row, joint), is_outside))
+            return true;
         }
         return false;
       }

@@ -23,7 +23,10 @@ void CellReload::watch(std::vector<std::filesystem::path> files) {
 }
 
 void CellReload::poll() {
-  if (have_files_changed() || is_due_) read_again();
+  if (have_files_changed())
+    read_again("a file of the cell has changed");
+  else if (is_due_)
+    read_again(cause_);
 }
 
 // A cell that was read again may name other files.
@@ -37,11 +40,12 @@ bool CellReload::have_files_changed() {
   return watches_ && watch_.changed();
 }
 
-void CellReload::read_again() {
+void CellReload::read_again(std::string_view cause) {
+  cause_ = cause;
   const std::optional<std::string> followed = actions_.followed();
   is_due_ = !followed;
   if (is_due_) return;
-  log_line(lines::kReading, file_);
+  log_line(lines::kReading, cause_, file_);
   service_.reloading();
   if (!followed->empty()) {
     const std::string counts = fmt::format("the cell of {} counts", *followed);

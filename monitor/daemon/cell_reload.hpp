@@ -5,6 +5,7 @@
 #include <functional>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "config/cell/cell.hpp"
@@ -35,7 +36,8 @@ class CellReload {
   // service gets word of each reading, and outlives this.
   CellReload(const Cell& cell, bool watches, ServiceManager& service, Actions actions);
 
-  void read_again();
+  // `cause` is for the log, and outlives this.
+  void read_again(std::string_view cause = "SIGHUP came");
   // To be called about twice a second.
   void poll();
 
@@ -51,6 +53,7 @@ class CellReload {
   const Actions actions_;
   FileWatch watch_;
   bool is_due_ = false;  // it could not be read yet
+  std::string_view cause_;
   Mutex mutex_;
   // The files of the cell that was read again.
   GUARDED_BY(mutex_) std::optional<std::vector<std::filesystem::path>> read_files_;

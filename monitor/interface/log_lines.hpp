@@ -32,8 +32,8 @@ inline constexpr LogLine<Text> kNoSpeedScaling{
     "no-speed-scaling", kWarn,
     "{} is not published: the cell has no zone; one with 'separation:' scales from 0 to 1"};
 inline constexpr LogLine<Text> kStopped{"stopped", kInfo, "stopped after {}"};
-inline constexpr LogLine<Text> kReading{"cell-read-again", kInfo,
-                                        "SIGHUP came: {} is read again; SIGTERM ends the daemon"};
+inline constexpr LogLine<Text, Text> kReading{"cell-read-again", kInfo,
+                                              "{}: {} is read again; SIGTERM ends the daemon"};
 inline constexpr LogLine<Count, Count, Count> kSceneChanged{
     "scene-changed", kInfo,
     "the cell's revision {:016x} is in force from cycle {}, and {:016x} is not any more"};

@@ -179,7 +179,7 @@ struct RobotStop {
   double scaling = 0.0;
   // The least of (PairReport::stop_lower - margin) over its pairs, m; -infinity: not known.
   double clearance = 0.0;
-  std::uint32_t pair = 0;  // that has this clearance, or limits the scaling; Scene::pairs
+  std::uint32_t pair = 0;  // that has this clearance; Scene::pairs
   double share = 0.0;      // of its motion to the stop, 0 to 1, that is certainly clear
   double time = 0.0;       // s: until it stands, from the report on; NaN: not known
 };

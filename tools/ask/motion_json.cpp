@@ -37,6 +37,19 @@ std::vector<std::string> keys_of_a_motion() {
   return keys;
 }
 
+// Calls use(value) for the value of a key, if it is there. A value of a wrong type names the key.
+template <class Use>
+void read_key(const Json& object, const char* key, const Use& use) {
+  const auto at = object.find(key);
+  if (at == object.end()) return;
+  try {
+    use(*at);
+  } catch (const Json::exception& error) {
+    const std::string text = error.what();  // "[json.exception.type_error.302] type must be ..."
+    throw BadLine(fmt::format("\"{}\": {}", key, text.substr(text.find("] ") + 2)));
+  }
+}
+
 template <class T, std::size_t N>
 std::array<T, N> entries(const Json& list, const std::string& where, const char* expected) {
   expect_list(list, N, where, expected);
@@ -56,13 +69,15 @@ std::vector<double> rows_of(const Json& line, const char* key, std::size_t colum
 }
 
 JointTrajectory trajectory_of(const Json& line) {
+  for (const char* key : {"joints", "times_s", "positions"}) (void)member(line, key, "a motion");
   JointTrajectory motion;
-  motion.joints = line.at("joints").get<std::vector<std::string>>();
-  motion.times = line.at("times_s").get<std::vector<double>>();
-  motion.positions = rows_of(line, "positions", motion.joints.size());
-  if (line.contains("velocities")) {
-    motion.velocities = rows_of(line, "velocities", motion.joints.size());
-  }
+  read_key(line, "joints", [&](const Json& of) { of.get_to(motion.joints); });
+  read_key(line, "times_s", [&](const Json& of) { of.get_to(motion.times); });
+  const std::size_t columns = motion.joints.size();
+  read_key(line, "positions",
+           [&](const Json&) { motion.positions = rows_of(line, "positions", columns); });
+  read_key(line, "velocities",
+           [&](const Json&) { motion.velocities = rows_of(line, "velocities", columns); });
   return motion;
 }
 
@@ -208,6 +223,9 @@ void read_margins(const Json& margins, Question& question) {
       question.margins.push_back(margin.get<double>());
       continue;
     }
+    if (!margin.is_object())
+      throw BadLine(
+          fmt::format("found the margin {}; expected a number or an object", margin.dump()));
     const bool is_of_zone = margin.contains("zone");
     refuse_unknown_keys(margin, {is_of_zone ? "zone" : "between", "m"}, "a margin");
     MarginBetween& of = question.margins_between.emplace_back();
@@ -236,18 +254,20 @@ Question read_question(const Json& line, const Question& defaults) {
   refuse_unknown_keys(line, kKeys, "the motion");
   Question question = defaults;
   question.motion = trajectory_of(line);
-  if (line.contains("held")) {
-    for (const auto& [name, position] : line["held"].items()) {
+  const auto read = [&line](const char* key, const auto& use) { read_key(line, key, use); };
+  read("held", [&](const Json& of) {
+    if (!of.is_object()) throw BadLine(R"("held" is no object; expected {"JOINT": position})");
+    for (const auto& [name, position] : of.items()) {
       question.held.push_back({name, position.get<double>()});
     }
-  }
-  if (line.contains("poses")) {
-    for (const auto& [name, pose] : line["poses"].items()) {
+  });
+  read("poses", [&](const Json& of) {
+    for (const auto& [name, pose] : of.items()) {
       question.poses.push_back({name, read_pose(pose, "poses." + name)});
     }
-  }
-  if (line.contains("joints_of_others")) {
-    for (const auto& [name, stated] : line["joints_of_others"].items()) {
+  });
+  read("joints_of_others", [&](const Json& of) {
+    for (const auto& [name, stated] : of.items()) {
       StatedJoint joint{.name = name};
       if (stated.is_array()) {
         const auto [position, age] =
@@ -259,38 +279,38 @@ Question read_question(const Json& line, const Question& defaults) {
       }
       question.joints.push_back(joint);
     }
-  }
-  if (line.contains("turn_speeds")) {
-    for (const auto& [name, speed] : line["turn_speeds"].items()) {
+  });
+  read("turn_speeds", [&](const Json& of) {
+    for (const auto& [name, speed] : of.items()) {
       const auto at = std::ranges::find(question.poses, name, &StatedPose::object);
       if (at == question.poses.end())
         throw BadLine("\"turn_speeds\" names \"" + name + "\", which has no pose");
       at->turn_speed = speed.get<double>();
     }
-  }
-  if (line.contains("beside")) {
-    for (const Json& motion : line["beside"]) {
+  });
+  read("beside", [&](const Json& of) {
+    for (const Json& motion : of) {
       refuse_unknown_keys(motion, kTrajectoryKeys, "a motion beside");
       question.beside.push_back(trajectory_of(motion));
     }
-  }
-  if (line.contains("moving")) {
-    for (const auto& [name, motion] : line["moving"].items()) {
+  });
+  read("moving", [&](const Json& of) {
+    for (const auto& [name, motion] : of.items()) {
       question.moving.push_back(object_motion_of(name, motion));
     }
-  }
-  if (line.contains("payloads")) {
-    for (const Json& payload : line["payloads"]) question.payloads.push_back(payload_of(payload));
-  }
-  if (line.contains("contacts")) {
+  });
+  read("payloads", [&](const Json& of) {
+    for (const Json& payload : of) question.payloads.push_back(payload_of(payload));
+  });
+  read("contacts", [&](const Json& of) {
     question.contacts.emplace();
-    for (const Json& contact : line["contacts"]) question.contacts->push_back(contact_of(contact));
-  }
-  if (line.contains("profile")) question.profile = profile_of(line["profile"]);
-  if (line.contains("time_scaling")) question.time_scaling = line["time_scaling"].get<bool>();
-  if (line.contains("stoppable")) question.stoppable = line["stoppable"].get<bool>();
-  if (line.contains("others")) question.others = others_of(line["others"].get<std::string>());
-  if (line.contains("margins")) read_margins(line["margins"], question);
+    for (const Json& contact : of) question.contacts->push_back(contact_of(contact));
+  });
+  read("profile", [&](const Json& of) { question.profile = profile_of(of); });
+  read("time_scaling", [&](const Json& of) { question.time_scaling = of.get<bool>(); });
+  read("stoppable", [&](const Json& of) { question.stoppable = of.get<bool>(); });
+  read("others", [&](const Json& of) { question.others = others_of(of.get<std::string>()); });
+  read("margins", [&](const Json& of) { read_margins(of, question); });
   return question;
 }
 

@@ -31,7 +31,8 @@ constexpr std::chrono::duration<double, std::milli> kLongestWait{4.0};
 constexpr double kGoldenRatio = 0.6180339887498949;
 
 constexpr const char* kSendFooter =
-    R"(Changes are a YAML list; idl/COMMANDS.md has them all. Lengths are in m and angles in rad, unless the file is a map:
+    R"(Changes are a YAML list; idl/COMMANDS.md has them all. Lengths are in m and angles in rad, unless the file is a map
+that states units. An entry of objects, as in add_object, is in the units of the cell in any case:
   units: {length: mm, angle: deg}
   changes:
     - attach: {object: part, to: left_hand, touch: [left_finger]}

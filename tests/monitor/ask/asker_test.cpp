@@ -144,6 +144,22 @@ TEST(Asker, RefusesAQuestionThatLeavesAJointOpen) {
   EXPECT_TRUE(std::holds_alternative<std::string>(ask(scene, question)));
 }
 
+// As joint states do: degrees that were meant as radians would be another posture.
+TEST(Asker, RefusesPositionsBeyondTheLimitsOfAnyJoint) {
+  const Scene scene = scara_beside(kPin);
+  const auto is_refused = [&](const Question& question) {
+    return std::holds_alternative<std::string>(ask(scene, question));
+  };
+  EXPECT_TRUE(is_refused(swing(0.0, 30.0)));
+  EXPECT_TRUE(is_refused(swing(-30.0, 0.0)));
+  EXPECT_FALSE(is_refused(swing(-3.0, 3.0)));
+  Question question = swing(0.0, 1.0);
+  question.held[0].position = 50.0;
+  EXPECT_TRUE(is_refused(question));
+  question.held[0].position = 3.01;  // as far beyond as encoders are off
+  EXPECT_FALSE(is_refused(question));
+}
+
 TEST(Asker, TakesAWaypointThatIsStatedTwice) {
   const Scene scene = scara_beside(kPin);
   Question question = swing(-1.0, 0.6);

@@ -103,7 +103,8 @@ TEST(AssumedMotion, NoPostureThatItAdmitsIsNearerThanTheLowerBound) {
       for (std::size_t j = 0; j < 3; ++j) {
         const double most = speeds[j] * since;
         double position = right[j].position + (i % 2 == 0 ? between(-most, most) : most);
-        if (j == 2) position = std::clamp(position, 0.0, 0.2);
+        const double limits[] = {3.0, 3.0, 0.2};
+        position = std::clamp(position, j == 2 ? 0.0 : -limits[j], limits[j]);
         posture.held.push_back({right[j].name, position});
       }
       posture.profile = ProfileRequest{.first = "left_finger", .second = "right_finger"};
