@@ -153,8 +153,9 @@ TEST(Asker, RefusesPositionsBeyondTheLimitsOfAnyJoint) {
   EXPECT_TRUE(is_refused(swing(0.0, 30.0)));
   EXPECT_TRUE(is_refused(swing(-30.0, 0.0)));
   EXPECT_FALSE(is_refused(swing(-3.0, 3.0)));
-  Question question = swing(0.0, 1.0);
-  question.held[0].position = 50.0;
+  Question question = swing(0.0, 30.0);
+  question.motion.joints = {"elbow"};  // a continuous one
+  question.held[0] = {"shoulder", 50.0};
   EXPECT_TRUE(is_refused(question));
   question.held[0].position = 3.01;  // as far beyond as encoders are off
   EXPECT_FALSE(is_refused(question));
