@@ -46,6 +46,9 @@ CommandLine import_line(ImportArguments& arguments) {
       .about =
           "Write a cell file in which each link of a robot is an object, whose pose has to "
           "arrive, from its URDF (collision shapes) and SRDF",
+      .footer =
+          "Example:\n  clearance-scene import panda.urdf --srdf panda.srdf --max-speed 3 -o "
+          "panda.yaml",
       .name = "import"};
   line.add(robot_options(robot,
                          "The robot's SRDF, which disables pairs, with reasons; without it, pairs "
@@ -111,6 +114,7 @@ CommandLine allow_line(AllowArguments& arguments) {
           "Propose which pairs of a robot's links need not be watched, by sampling its joints: "
           "pairs that are adjacent, in contact with all joints at zero, always in contact, or "
           "never within --never-margin. 'Never' is what the samples show and no proof",
+      .footer = "Example:\n  clearance-scene allow panda.urdf -o panda.srdf",
       .name = "allow"};
   line.add(robot_options(arguments.robot, "Also print where this SRDF agrees with the proposal"));
   line.add({
@@ -132,6 +136,7 @@ CommandLine allow_line(AllowArguments& arguments) {
 
 CommandLine warehouse_line(WarehouseArguments& arguments) {
   return {.about = "Generate the cell of a warehouse, with a simulation",
+          .footer = "Example:\n  clearance-scene warehouse 1000 -o warehouse.yaml",
           .name = "warehouse",
           .options = {
               {"OBJECTS", &arguments.warehouse.objects, "Number of objects, 60 to 4096",
@@ -144,6 +149,7 @@ CommandLine warehouse_line(WarehouseArguments& arguments) {
 
 CommandLine report_line(ReportArguments& arguments) {
   return {.about = "Print the models of each object of a cell: facets, certified errors, memory",
+          .footer = "Example:\n  clearance-scene report warehouse.yaml",
           .name = "report",
           .options = {{"CELL", &arguments.cell, "The cell file (YAML)", required()},
                       {"--json", &arguments.json, "Print JSON"}}};
@@ -154,6 +160,7 @@ CommandLine errors_line(ErrorsArguments& arguments) {
       .about =
           "Print what the stated errors of a cell do in one posture, and by which joint, "
           "base or mount; or whether they explain measured places",
+      .footer = "Example:\n  clearance-scene errors cell.yaml --joint left_elbow=1.2",
       .name = "errors",
       .options = {
           {"CELL", &arguments.cell, "The cell file (YAML)", required()},
@@ -172,6 +179,7 @@ CommandLine stops_line(StopsArguments& arguments) {
   return {.about =
               "Print how far and how long each joint goes on once its robot is to stop, by what "
               "the cell states",
+          .footer = "Example:\n  clearance-scene stops cell.yaml --plot stops.svg",
           .name = "stops",
           .options = {{"CELL", &arguments.cell, "The cell file (YAML)", required()},
                       {"--plot", &arguments.plot, "SVG of distances over speeds, by gnuplot"}}};
