@@ -3,6 +3,7 @@
 
 #include <tinyxml2.h>
 
+#include <algorithm>
 #include <string>
 #include <string_view>
 #include <unordered_map>
@@ -19,7 +20,8 @@ namespace clearance {
 class ReadWords {
  public:
   void ask(const tinyxml2::XMLElement& element, const char* name) {
-    asked_[&element].emplace_back(name);
+    std::vector<std::string>& asked = asked_[&element];
+    if (std::ranges::find(asked, name) == asked.end()) asked.emplace_back(name);
   }
   void mark(const void* read) { read_.insert(read); }
 

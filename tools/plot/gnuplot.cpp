@@ -24,10 +24,13 @@ std::string plot_text(const std::string& text) {
 std::string plot_svg(const std::filesystem::path& svg, int width, int height,
                      const std::string& script) {
   const std::string file = svg.string() + ".gnuplot";
-  std::ofstream(file) << fmt::format(
+  std::ofstream out(file);
+  if (!out) return fmt::format("cannot write {}: does its folder exist?", file);
+  out << fmt::format(
       "set terminal svg size {},{} dynamic enhanced font 'sans,12' background '#ffffff'\n"
       "set output '{}'\nset encoding utf8\n{}\nunset output\n",
       width, height, svg.string(), script);
+  out.close();
   const ProgramRun gnuplot = run_program({"gnuplot", file});
   std::error_code ignored;
   std::filesystem::remove(file, ignored);
