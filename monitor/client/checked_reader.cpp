@@ -16,9 +16,10 @@ CheckedReader::CheckedReader(Participant& participant, TopicKind kind, const std
       refused_{.topic = topic} {}
 
 template <class Message>
-bool CheckedReader::take(Message& message, dds_sample_info_t& info) {
+bool CheckedReader::take(Message& message, dds_sample_info_t& info, bool keys_too) {
   void* pointer = &message;
   while (dds_take(entity_, &pointer, &info, 1, 1) > 0) {
+    if (!info.valid_data && keys_too) return true;
     if (!info.valid_data) continue;
     const ReportError error = delivery_error(message, address_);
     if (error == ReportError::kGood) return true;
@@ -28,11 +29,11 @@ bool CheckedReader::take(Message& message, dds_sample_info_t& info) {
   return false;
 }
 
-template bool CheckedReader::take(clearance_msg_Catalogue&, dds_sample_info_t&);
-template bool CheckedReader::take(clearance_msg_ZoneState&, dds_sample_info_t&);
-template bool CheckedReader::take(clearance_msg_Health&, dds_sample_info_t&);
-template bool CheckedReader::take(clearance_msg_CommandResult&, dds_sample_info_t&);
-template bool CheckedReader::take(clearance_msg_Answer&, dds_sample_info_t&);
+template bool CheckedReader::take(clearance_msg_Catalogue&, dds_sample_info_t&, bool);
+template bool CheckedReader::take(clearance_msg_ZoneState&, dds_sample_info_t&, bool);
+template bool CheckedReader::take(clearance_msg_Health&, dds_sample_info_t&, bool);
+template bool CheckedReader::take(clearance_msg_CommandResult&, dds_sample_info_t&, bool);
+template bool CheckedReader::take(clearance_msg_Answer&, dds_sample_info_t&, bool);
 
 std::string text_of(const std::vector<RefusedMessages>& topics) {
   std::string text;

@@ -31,8 +31,10 @@ class CheckedReader {
                 bool of_several = false);
 
   // Takes the next message that is good. False when none waits; `message` may be changed, though.
+  // With `keys_too`, also one that only tells that an instance is gone: `message` has its key then,
+  // and `info` no valid data.
   template <class Message>
-  bool take(Message& message, dds_sample_info_t& info);
+  bool take(Message& message, dds_sample_info_t& info, bool keys_too = false);
   template <class Message>
   bool take(Message& message) {
     dds_sample_info_t info;

@@ -285,9 +285,15 @@ void Zones::update() {
   clearance_msg_ZoneState state{};
   dds_sample_info_t info;
   std::set<std::uint32_t> changed;
-  while (reader_.take(state, info)) {
-    written_[state.zone][state.daemon] = {state, info.publication_handle};
-    changed.insert(state.zone);
+  while (reader_.take(state, info, true)) {
+    // A changed cell has fewer zones: others may have the names of those that are gone.
+    if (info.instance_state == DDS_IST_NOT_ALIVE_DISPOSED) {
+      written_.erase(state.zone);
+      states_.erase(state.zone);
+    } else if (info.valid_data) {
+      written_[state.zone][state.daemon] = {state, info.publication_handle};
+      changed.insert(state.zone);
+    }
   }
   const bool has_several =
       std::ranges::any_of(written_, [](const auto& zone) { return zone.second.size() > 1; });

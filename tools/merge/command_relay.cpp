@@ -50,6 +50,15 @@ std::optional<std::uint32_t> needs_a_pose(const Command& command) {
   return std::nullopt;
 }
 
+// Each share counts the cycles of its own daemon.
+std::optional<std::uint32_t> ends_by_cycle(const Command& command) {
+  for (std::uint32_t i = 0; i < command.changes.size(); ++i) {
+    const auto* const allow = std::get_if<AllowContact>(&command.changes[i]);
+    if (allow != nullptr && allow->end.last_cycle != ContactEnd::kNoCycle) return i;
+  }
+  return std::nullopt;
+}
+
 }  // namespace
 
 CommandRelay::CommandRelay(client::Connection& connection, const Cell& cell, std::uint64_t daemon)
@@ -163,6 +172,13 @@ CommandResult CommandRelay::pass_on(const Command& asked) {
     CommandResult result = refusal(asked, CommandStatus::kNoPose,
                                    "the shares of a cell do not read the same poses: state the "
                                    "pose");
+    result.change = *change;
+    return result;
+  }
+  if (const auto change = ends_by_cycle(asked)) {
+    CommandResult result = refusal(asked, CommandStatus::kRefused,
+                                   "the shares of a cell count other cycles than its clients see: "
+                                   "end the contact by time_ns or duration");
     result.change = *change;
     return result;
   }

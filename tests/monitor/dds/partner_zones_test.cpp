@@ -3,6 +3,7 @@
 
 #include <array>
 #include <map>
+#include <set>
 
 #include "monitor/client/client.hpp"
 #include "monitor/publish/report_writer.hpp"
@@ -264,6 +265,33 @@ TEST(PartnersZones, AStateThatCameTooEarlyCountsOnceTheOtherDaemonHasGone) {
     zones.update();
   }
   EXPECT_TRUE(eventually([&] { return is_active(true); }));
+}
+
+// The zone of a greater number may have the name of one that is gone, with a state of its own.
+TEST(PartnersZones, AZoneThatTheChangedCellDoesNotHaveIsForgottenUntilItIsWrittenAgain) {
+  const DdsOptions dds = test::own_dds();
+  client::Connection connection(dds);
+  client::Zones zones(connection);
+  Participant daemon(dds);
+  const dds_entity_t writer = daemon.writer(TopicKind::kZones, connection.topics().zones);
+  const auto has = [&](std::set<std::uint32_t> expected) {
+    zones.update();
+    std::set<std::uint32_t> found;
+    for (const auto& [zone, state] : zones.states()) found.insert(zone);
+    return found == expected;
+  };
+  clearance_msg_ZoneState first{}, second{};
+  first.daemon = second.daemon = 1;
+  second.zone = 1;
+  test::write_sealed(daemon, writer, first);
+  test::write_sealed(daemon, writer, second);
+  ASSERT_TRUE(eventually([&] { return has({0, 1}); }));
+  second.active = true;
+  test::write_sealed(daemon, writer, second);  // taken together with its end, or before
+  check_dds(dds_dispose(writer, &second), "disposing");
+  EXPECT_TRUE(eventually([&] { return has({0}); }));
+  test::write_sealed(daemon, writer, second);
+  EXPECT_TRUE(eventually([&] { return has({0, 1}); }));
 }
 
 // Two daemons write one zone, and a client hears them in any order.

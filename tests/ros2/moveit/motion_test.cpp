@@ -210,7 +210,9 @@ TEST_F(MoveItSlides, ThatStandOutTurnFar) {
 TEST_F(MoveItMotions, CountAsCollisionsWhereTheyCannotBeChecked) {
   scene.world->addToObject("nothing", std::make_shared<shapes::Mesh>(0, 0),
                            Eigen::Isometry3d::Identity());
-  EXPECT_TRUE(sweep.check().collision);
+  const CollisionResult result = sweep.check(true);
+  EXPECT_TRUE(result.collision);
+  EXPECT_EQ(result.distance, 0.0);
 }
 
 TEST_F(MoveItMotions, WithoutNumbersAreCollisions) {

@@ -41,6 +41,34 @@ struct ReportParts {
   KnownNames names;
 };
 
+// What the streams of reports, separations and gradients say together: two faults of one hold all.
+struct Judged {
+  ReportParts& parts;
+
+  template <class Use>
+  void for_each(const Use& use) const {
+    use(parts.stream);
+    if (parts.separations) use(parts.separations->stream());
+    if (parts.gradients) use(parts.gradients->stream());
+  }
+  [[nodiscard]] bool is_held() const {
+    bool held = false;
+    for_each([&](const auto& stream) { held = held || stream.is_held(); });
+    return held;
+  }
+  [[nodiscard]] ReportError reason() const {
+    ReportError reason = parts.stream.reason();
+    for_each([&](const auto& stream) {
+      if (reason == ReportError::kGood && stream.is_held()) reason = stream.reason();
+    });
+    return reason;
+  }
+  [[nodiscard]] bool fail_safe() const { return reason() != ReportError::kGood; }
+  void acknowledge() {
+    for_each([](auto& stream) { stream.acknowledge(); });
+  }
+};
+
 std::shared_ptr<const Names> names_of(ReportParts& parts, std::uint64_t revision) {
   if (auto known = parts.names.of(revision)) return known;
   parts.catalogue.update();
@@ -203,10 +231,11 @@ Keys are the fields of Health in idl/FIELDS.md, times in us and ns. rejected, in
 notes, shares and witnesses are lists of dicts.)");
   add_judgement(reports, [](Reports& self, const auto& act) {
     const Reports::Use parts = self.use();
-    return act(parts->stream);
+    Judged all{*parts};
+    return act(all);
   });
   reports.def_property_readonly(
-      "is_held", [](Reports& self) { return self.use()->stream.is_held(); },
+      "is_held", [](Reports& self) { return Judged{*self.use()}.is_held(); },
       "Two reports were faulty within error_interval_s: `fail_safe` stays until acknowledge().");
   add_closing(reports);
 }

@@ -33,7 +33,9 @@ py::dict zones_of(const ZoneStates& zones, const py::list& names) {
   py::dict all;
   for (const auto& [id, state] : zones) {
     const bool is_named = *state.name != '\0' || id >= names.size();
-    all[is_named ? py::object(py::str(state.name)) : py::object(names[id])] = value_of(state);
+    const py::object name = is_named ? py::object(py::str(state.name)) : py::object(names[id]);
+    // While the cell changes, two ids may have one name: an active state counts.
+    if (state.active || !all.contains(name)) all[name] = value_of(state);
   }
   return all;
 }

@@ -26,6 +26,8 @@ class TickMessages {
 
   using Clock = std::chrono::steady_clock;
 
+  [[nodiscard]] client::Stream<Message>& stream() noexcept { return stream_; }
+
   // The message of the tick of this report, valid until the next call; null: none came. It is sent
   // right behind the report. If a daemon sends such messages, this waits for at most kPatience, and
   // not beyond `end`.

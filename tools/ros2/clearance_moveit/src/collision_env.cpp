@@ -179,6 +179,7 @@ void CollisionEnv::check_motion(const collision_detection::CollisionRequest& req
   if (const auto* text = std::get_if<std::string>(&checked)) {
     RCLCPP_ERROR(logger(), "The motion counts as a collision: %s", text->c_str());
     result.collision = true;
+    if (request.distance) result.distance = std::min(result.distance, 0.0);
     return;
   }
   const auto& verdict = std::get<MotionVerdict>(checked);
