@@ -76,9 +76,11 @@ std::optional<std::uint32_t> SimulationReader::read_object(const YamlNode& node)
   if (std::ranges::any_of(list_.stated, [&](const StatedAttachment& stated) {
         return stated.place == list_.places[index];
       })) {
-    diagnostics_.add(node, fmt::format("found the attached object '{}'; expected one that is not "
-                                       "attached, since its carrier moves this one: leave it out of the simulation",
-                                       *name));
+    diagnostics_.add(
+        node,
+        fmt::format("found the attached object '{}'; expected one that is not "
+                    "attached, since its carrier moves this one: leave it out of the simulation",
+                    *name));
     return std::nullopt;
   }
   if (list_.objects[index].is_seen()) {
