@@ -10,6 +10,7 @@
 #include "config/edit/cell_document.hpp"
 #include "config/edit/change_document.hpp"
 #include "config/edit/touched_entry.hpp"
+#include "config/scene/pairs_between.hpp"
 #include "config/yaml/yaml_writer.hpp"
 
 namespace clearance {
@@ -92,7 +93,9 @@ bool is_overruled(const SetPair& pair, std::span<const CellChange> later) {
 std::optional<EditRefusal> void_contact(const AllowContact& wanted, std::size_t place,
                                         const Scene& scene) {
   const auto found = std::ranges::find(scene.contacts, wanted.contact, &AllowedContact::name);
-  if (found == scene.contacts.end() || !found->pairs.empty()) return std::nullopt;
+  if (found == scene.contacts.end() || !found->pairs.empty() ||
+      !pairs_between(scene, wanted.a, wanted.b).empty())
+    return std::nullopt;
   return EditRefusal{place, fmt::format("contacts[{}]", wanted.contact),
                      fmt::format("found a contact over no pair: none between '{}' and '{}' is "
                                  "watched; expected at least one",
@@ -100,6 +103,7 @@ std::optional<EditRefusal> void_contact(const AllowContact& wanted, std::size_t 
 }
 
 // A rule that other rules make void would be accepted and change nothing.
+// `scene` has the pairs of the whole cell.
 std::optional<EditRefusal> void_rule(std::span<const CellChange> changes, const Scene& scene) {
   for (std::size_t i = 0; i < changes.size(); ++i) {
     if (const auto* contact = std::get_if<AllowContact>(&changes[i])) {
@@ -243,7 +247,10 @@ std::variant<Cell, EditRefusal> CellEditor::State::read(std::span<const CellChan
   auto result = readings.read(document.tree(), document.text());
   if (const auto* errors = std::get_if<std::vector<CellError>>(&result))
     return refusal(changes, *errors);
-  if (auto refused = void_rule(changes, std::get<Cell>(result).scene)) return *std::move(refused);
+  const Cell& cell = std::get<Cell>(result);
+  std::optional<Scene> whole;  // if the cell is a share
+  if (cell.shares.is_one()) whole.emplace(cell.scene).pairs = cell.shares.pairs;
+  if (auto refused = void_rule(changes, whole ? *whole : cell.scene)) return *std::move(refused);
   return std::get<Cell>(std::move(result));
 }
 

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "config/cell/share_topics.hpp"
+#include "config/edit/cell_editor.hpp"
 #include "config/scene/refresh_share.hpp"
 #include "tests/config/cells.hpp"
 
@@ -241,6 +242,21 @@ TEST(Shares, EachHasToFitIntoTheBudget) {
   EXPECT_EQ(mistake(with_budget(5, kThree)), "");
   EXPECT_NE(mistake(with_budget(2, kThree)).find("budget"), std::string::npos);
   EXPECT_EQ(mistake(with_budget(5, kThree), "left cell"), "");
+}
+
+// All shares are asked for each command, and none of them watches all pairs.
+TEST(Shares, TakeAChangeOfAPairThatAnotherShareHas) {
+  for (const char* share : {"left cell", "right cell"}) {
+    auto opened = CellEditor::open(halls(kThree), "cell.yaml", {.share = share});
+    CellEditor& editor = std::get<CellEditor>(opened);
+    const auto is_taken = [&](const CellChange& change) {
+      return std::holds_alternative<Cell>(editor.dry_run(std::vector{change}));
+    };
+    EXPECT_TRUE(is_taken(SetPair{"c", "pole", SetPair::Rule::kPublish})) << share;
+    EXPECT_TRUE(is_taken(AllowContact{.contact = "dock", .a = "c", .b = "pole", .depth = 0.01}));
+    EXPECT_FALSE(is_taken(SetPair{"post", "pole", SetPair::Rule::kPublish})) << "both are fixed";
+    EXPECT_FALSE(is_taken(AllowContact{.contact = "no", .a = "post", .b = "pole", .depth = 0.01}));
+  }
 }
 
 }  // namespace
