@@ -253,9 +253,12 @@ TEST(Shares, TakeAChangeOfAPairThatAnotherShareHas) {
       return std::holds_alternative<Cell>(editor.dry_run(std::vector{change}));
     };
     EXPECT_TRUE(is_taken(SetPair{"c", "pole", SetPair::Rule::kPublish})) << share;
-    EXPECT_TRUE(is_taken(AllowContact{.contact = "dock", .a = "c", .b = "pole", .depth = 0.01}));
+    const auto contact = [](const char* a, const char* b) {
+      return AllowContact{"dock", a, b, 0.01, {}, "an engineer", "docking"};
+    };
+    EXPECT_TRUE(is_taken(contact("c", "pole"))) << share;
     EXPECT_FALSE(is_taken(SetPair{"post", "pole", SetPair::Rule::kPublish})) << "both are fixed";
-    EXPECT_FALSE(is_taken(AllowContact{.contact = "no", .a = "post", .b = "pole", .depth = 0.01}));
+    EXPECT_FALSE(is_taken(contact("post", "pole"))) << share;
   }
 }
 
