@@ -144,7 +144,7 @@ TEST(Asker, RefusesAQuestionThatLeavesAJointOpen) {
   EXPECT_TRUE(std::holds_alternative<std::string>(ask(scene, question)));
 }
 
-// As joint states do: degrees that were meant as radians would be another posture.
+// Degrees that were meant as radians would be another posture; joint states are judged alike.
 TEST(Asker, RefusesPositionsBeyondTheLimitsOfAnyJoint) {
   const Scene scene = scara_beside(kPin);
   const auto is_refused = [&](const Question& question) {

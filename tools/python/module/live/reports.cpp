@@ -41,7 +41,7 @@ struct ReportParts {
   KnownNames names;
 };
 
-// What the streams of reports, separations and gradients say together: two faults of one hold all.
+// Joins the judgements of reports, separations and gradients: two faults of one hold all.
 struct Judged {
   ReportParts& parts;
 
