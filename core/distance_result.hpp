@@ -41,8 +41,8 @@ enum class DistancePath : std::uint8_t {
 // Overlapping bodies: B moved by depth * normal only touches A, and the two points are those that
 // meet there. They are support points: point_on_a of A along the normal, and point_on_b of B
 // against it, at B's present place. Again point_on_b - point_on_a = distance * normal. For curved
-// bodies this holds along the normal only, to upper - lower; across it both points are anywhere in
-// the contact.
+// bodies this holds along the normal, to upper - lower. Across it, it holds unless each point is in
+// a face, and points that meet were not found.
 //
 // Touching bodies: the two points coincide up to rounding. Unbounded bodies may touch far away; the
 // rounding is then that of the coordinates at that place.

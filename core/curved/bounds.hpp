@@ -44,13 +44,12 @@ struct CurvedConclusion {
   bool is_radial = false;  // the normal is that of a closed form, along the gap vector to rounding
 };
 
-// The direction, from A to B, in which radii are added. If the bodies without their radii are
-// disjoint, it is the direction of the gap vector. Then the rest of that vector is as long as the
-// distance.
-[[nodiscard]] inline Vec3 radial_direction(const CurvedConclusion& found) noexcept {
-  if (found.is_radial) return found.normal;
-  const Vec3 gap = found.point_on_b - found.point_on_a;
-  return found.lower > 0.0 && !gap.isZero(0.0) ? unit_along(gap) : found.normal;
+// The direction, from A to B, in which radii are added, m: their `sum`. If the bodies with their
+// radii are disjoint, it is the direction of the gap vector. Then the rest of that vector is as
+// long as the distance. The direction of a shorter vector may be that of its rounding.
+[[nodiscard]] inline Vec3 radial_direction(const CurvedConclusion& found, double sum) noexcept {
+  if (found.is_radial || !(found.lower > sum)) return found.normal;
+  return unit_along(Vec3(found.point_on_b - found.point_on_a));
 }
 
 // Bounds that have converged are within this of each other, times the pair's size. The error of the
@@ -76,8 +75,8 @@ inline constexpr double kConvergedCurvedGap = 1e-13, kComputedGap = 0.75 * kConv
       r.upper - r.lower <= kConvergedCurvedGap * (found.size + radii(a, b))) {
     r.status = DistanceStatus::kConverged;
   }
-  const bool rounded = radii(a, b) > 0.0;
-  finish(a, b, rounded ? radial_direction(found) : found.normal, r);
+  const double sum = radii(a, b);
+  finish(a, b, sum > 0.0 ? radial_direction(found, sum) : found.normal, r);
   return r;
 }
 

@@ -25,6 +25,7 @@ struct CurvedBounds {
   Vec3 normal = Vec3::Zero();  // for `lower`, in frame A, from A to B
   PointPair points{};          // for `upper`
   PointPair deepest{};         // of bodies that overlap: these meet when B is moved by the depth
+  bool has_deepest = false;    // a search has found them
 };
 
 // The bodies and the pose outlive it.

@@ -21,6 +21,7 @@ constexpr Cover kFine{0x1p-49, 3000}, kCoarse{1e-3, 1000};
 constexpr double kNearAxisSquare = 0x1p-32;   // of the sine
 constexpr double kNearlySymmetric = 0x1p-20;  // of the pair's size
 constexpr double kPointsOff = 0x1p-40;  // of the pair's size, along the direction of the depth
+constexpr int kTurns = 8;               // of points of two faces towards each other
 constexpr std::size_t kDeepest = 400;
 // The ring of directions on the cap, and a cap from which the rest is one fan of triangles, rad.
 constexpr double kRingAngle = 1.4, kLargeCap = 2.0;
@@ -311,15 +312,57 @@ class DepthSearch {
 // turned out to be better meanwhile, they belong to a former one: then a search from there finds
 // them, or the support points are taken, which are as far from each other along it.
 int find_deepest_points(CurvedPair& pair) noexcept {
-  const auto off = [&] {
-    return std::abs(pair.bounds.normal.dot(pair.bounds.deepest.gap()) - pair.bounds.lower);
+  const auto fit = [&] {
+    const double along = pair.bounds.normal.dot(pair.bounds.deepest.gap());
+    return pair.bounds.has_deepest && std::abs(along - pair.bounds.lower) <= kPointsOff * pair.size;
   };
-  if (off() <= kPointsOff * pair.size) return 0;
+  if (fit()) return 0;
   ActiveParts active;
   const int supports = search_direction(pair, pair.bounds.normal, active);
-  if (!(off() <= kPointsOff * pair.size))
-    pair.bounds.deepest = pair.support_along(pair.bounds.normal).points;
+  if (!fit()) pair.bounds.deepest = pair.support_along(pair.bounds.normal).points;
   return supports + 1;
+}
+
+// A point of the body that is near another one, in its frame. A body without facets has `present`.
+Vec3 moved_inside(const BodyView& view, Vec3 point, const Vec3& present) noexcept {
+  const ConvexBody& body = *view.body;
+  if (body.is_curved()) return pulled_inside(view, point);
+  if (!body.bounded() || body.facets.empty()) return present;
+  for (const Facet& facet : body.facets)
+    point -= std::max(0.0, facet.normal.dot(point) - facet.offset) * facet.normal;
+  const double rounding = kPointsOff * view.bounding_radius;
+  const bool is_inside = std::ranges::all_of(body.facets, [&](const Facet& facet) {
+    return facet.normal.dot(point) <= facet.offset + rounding;
+  });
+  return is_inside ? point : present;
+}
+
+// Both points are anywhere in their faces. They meet when B is moved if each can be taken to where
+// the other one is, in turn. Points of the bodies that are apart by the depth along the direction
+// are support points. A round body leaves its face if it is the first to be moved.
+void bring_together(CurvedPair& pair) noexcept {
+  const Vec3 apart = pair.bounds.lower * pair.bounds.normal;
+  const auto meet = [&](const PointPair& points) {
+    const Vec3 off = points.gap() - apart;
+    return std::abs(pair.bounds.normal.dot(off)) <= pair.error() &&
+           off.norm() <= kPointsOff * pair.size;
+  };
+  for (const bool b_is_first : {true, false}) {
+    PointPair points = pair.bounds.deepest;
+    bool moves_b = b_is_first;
+    for (int turn = 0; turn < kTurns; ++turn, moves_b = !moves_b) {
+      if (meet(points)) {
+        pair.bounds.deepest = points;
+        return;
+      }
+      if (moves_b) {
+        points.b_B = moved_inside(pair.b, pair.point_to_b(points.a + apart), points.b_B);
+        points.b = pair.point_to_a(points.b_B);
+      } else {
+        points.a = moved_inside(pair.a, points.b - apart, points.a);
+      }
+    }
+  }
 }
 
 }  // namespace
@@ -327,7 +370,10 @@ int find_deepest_points(CurvedPair& pair) noexcept {
 DepthBounds bound_depth(CurvedPair& pair, const ActiveParts& active) noexcept {
   assert(is_unit_or_unknown(pair.bounds.normal));
   DepthBounds found = DepthSearch(pair, active).run();
-  if (found.lower > 0.0) found.supports += find_deepest_points(pair);
+  if (found.lower > 0.0) {
+    found.supports += find_deepest_points(pair);
+    bring_together(pair);
+  }
   assert(is_unit_or_unknown(pair.bounds.normal) &&
          !(found.lower > -pair.bounds.lower + 2.0 * pair.error()));
   return found;

@@ -220,7 +220,10 @@ class DirectionSearch {
     } else {
       const PointPair last = add_points(found, kPointRounds);
       const bool deepest = at_.value >= pair_.bounds.lower - pair_.gap_tolerance();
-      if (at_.value < 0.0 && deepest) pair_.bounds.deepest = last;
+      if (at_.value < 0.0 && deepest) {
+        pair_.bounds.deepest = last;
+        pair_.bounds.has_deepest = true;
+      }
     }
     done_ = true;
   }

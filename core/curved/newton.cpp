@@ -100,7 +100,8 @@ inline HWY_NOINLINE void left_open(const Query4& q, CurvedTrackingState& tracked
     return;
   }
   r = thorough_distance({q.a, q.b, a_from_b, q.state, q.depth}, tracked);
-  if (!q.depth && !(r.lower > 0.0) && !(r.upper < 0.0)) r.status = DistanceStatus::kDepthNotAsked;
+  const bool is_known = r.upper < 0.0 && r.status != DistanceStatus::kIterationLimit;
+  if (!q.depth && !(r.lower > 0.0) && !is_known) r.status = DistanceStatus::kDepthNotAsked;
   write(tracked, q.a, q.b, q.state);
 }
 

@@ -151,7 +151,8 @@ HWY_INLINE bool certify_penetration(TrackedPair& pair) {
                    (are_facets_of_boxes(pair) && is_shortest_of_boxes(pair, p.size)));
     const double gap = noise + pair.contact.depth_error + 2.0 * p.error_bound;
     if (!certified || !(noise <= p.gap_tolerance) ||
-        !converges_with_radii(pair.a, pair.b, p.size, pair.found.distance, gap)) {
+        !(p.converged(gap) ||
+          converges_with_radii(pair.a, pair.b, p.size, pair.found.distance, gap))) {
       return false;
     }
   }

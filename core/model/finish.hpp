@@ -28,7 +28,8 @@ namespace clearance {
   // A depth that has not converged stays kIterationLimit. Only that of curved bodies may be so.
   const bool wide_depth =
       r.status == DistanceStatus::kIterationLimit && r.path == DistancePath::kDirection;
-  if (!(r.lower > 0.0) && !wide_depth) {
+  const bool is_open = wide_depth || r.status == DistanceStatus::kDepthNotAsked;
+  if (!(r.lower > 0.0) && !is_open) {
     if (r.upper < 0.0) {
       r.status = DistanceStatus::kOverlapping;
     } else if (r.status == DistanceStatus::kConverged) {
