@@ -114,8 +114,9 @@ void Posture::note_freedom(const Stretch& stretch, double at) noexcept {
       const double aged = t + free.age;
       return aged > 0.0 ? std::min(free.most, free.speed * aged) : 0.0;
     };
-    freedom_[free.variable] = {rounded_up(until(since.end)), rounded_down(until(since.middle)),
-                               rounded_down(until(since.begin))};
+    freedom_[free.variable] = {rounded_up(until(since.end)),
+                               rounded_down_if_finite(until(since.middle)),
+                               rounded_down_if_finite(until(since.begin))};
   }
   if (stops_.counts() && stops_.may_deviate()) stops_.add_deviations(freedom_);
 }

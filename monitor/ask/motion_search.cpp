@@ -220,8 +220,9 @@ MotionSearch::Pair MotionSearch::pair_at(std::uint32_t pair, const TipMotion& mo
     }
     nearing.until_end =
         rounded_up(nearing.until_end + motion.nearing.until_end + of_base.until_end);
-    nearing.until_middle += rounded_down(motion.nearing.until_middle + of_base.until_middle);
-    nearing.until_begin += rounded_down(motion.nearing.until_begin + of_base.until_begin);
+    nearing.until_middle +=
+        rounded_down_if_finite(motion.nearing.until_middle + of_base.until_middle);
+    nearing.until_begin += rounded_down_if_finite(motion.nearing.until_begin + of_base.until_begin);
     approach = &approach_;
   }
   const double loss =

@@ -263,9 +263,9 @@ void Posture::place_free_objects(const Stretch& stretch, double at) noexcept {
   for (const std::uint32_t i : free_) {
     if (speed_[i] == 0.0) continue;
     ObjectApproach& approach = approaches_[i];
-    approach.nearing = {rounded_up(swept(speed_[i], since.end + age_[i])),
-                        rounded_down(swept(speed_[i], since.middle + age_[i])),
-                        rounded_down(swept(speed_[i], since.begin + age_[i]))};
+    approach.nearing = {rounded_up(swept(since.end + age_[i], speed_[i])),
+                        rounded_down_if_finite(swept(since.middle + age_[i], speed_[i])),
+                        rounded_down_if_finite(swept(since.begin + age_[i], speed_[i]))};
     sweep(i);
   }
   moving_.place(stretch, at);

@@ -157,6 +157,12 @@ double StoppingJoints::covered(std::uint32_t variable) const noexcept {
   return covered(*find(variable));
 }
 
+double StoppingJoints::farthest() const noexcept {
+  double farthest = 0.0;
+  for (const Joint& joint : joints_) farthest = std::max(farthest, covered(joint));
+  return farthest;
+}
+
 double StoppingJoints::covered(const Joint& joint) const noexcept {
   const double faster = rounded_up(joint.speed + joint.gained);
   double braking = joint.stop->distance(faster);
@@ -185,6 +191,8 @@ void StoppingJoints::state(StatedJoint& out, std::uint32_t variable) const noexc
   if (!either) out.position += std::copysign(0.5 * covered, joint.velocity);
   const double beyond = joint.hold_within_limits(out.position);
   out.most = rounded_up((either ? covered : 0.5 * covered) + beyond);
+  out.speed = kInfinity;
+  out.age = std::max(out.age, kDuration);  // also if the other stop takes no time
 }
 
 // First the joints go on as they do. Then they brake: in proportion, if the path is kept, so that

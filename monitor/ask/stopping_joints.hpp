@@ -35,10 +35,13 @@ class StoppingJoints {
   [[nodiscard]] double time() const noexcept;
   // A joint is no farther from its present position until then, rad or m.
   [[nodiscard]] double covered(std::uint32_t variable) const noexcept;
+  // The largest of covered(), rad or m.
+  [[nodiscard]] double farthest() const noexcept;
   // Where a joint stands then, if it keeps its velocity until the brakes act and needs all that its
   // stop admits, rad or m: the end of the line, or the far corner of the box.
   [[nodiscard]] double standstill(std::uint32_t variable) const noexcept;
-  // Where a joint may be until then: no farther than `most` from `position`, rad or m.
+  // Where a joint may be until then: no farther than `most` from `position`, rad or m, however long
+  // another stop takes.
   void state(StatedJoint& out, std::uint32_t variable) const noexcept;
   // Writes the motion of a stop from `scaling` times the present speeds.
   void write_motion(double scaling, JointTrajectory& motion) const noexcept;

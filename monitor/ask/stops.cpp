@@ -29,6 +29,7 @@ Stops::Stops(const Scene& scene) : scene_(scene), stopping_of_robot_(scene.robot
   for (std::uint32_t r = 0; r < scene.robots.size(); ++r) {
     if (!scene.robots[r].stopping.is_stated()) continue;
     stopping_of_robot_[r] = static_cast<std::uint32_t>(robots_.size());
+    order_.push_back(stopping_of_robot_[r]);
     robots_.emplace_back(scene, r);
   }
   if (robots_.empty()) return;
@@ -49,6 +50,7 @@ Stops::Stops(const Scene& scene) : scene_(scene), stopping_of_robot_(scene.robot
     make_room(robot);
   }
 }
+
 Stops::~Stops() = default;
 
 Stops::StoppingRobot::StoppingRobot(const Scene& scene, std::uint32_t of)
@@ -61,6 +63,7 @@ Stops::StoppingRobot::StoppingRobot(const Scene& scene, std::uint32_t of)
 // The robot's own links, and those of what stands on it.
 void Stops::add_pairs(StoppingRobot& robot) const {
   std::vector<bool> is_moved(scene_.objects.size(), false);
+  robot.counts.resize(scene_.variables.size() + 2 * scene_.robots.size());
   const auto root = [&](std::uint32_t r) {
     while (r != robot.robot && scene_.robots[r].base.kind == RobotBase::Kind::kLink)
       r = scene_.robots[r].base.robot;
@@ -69,8 +72,9 @@ void Stops::add_pairs(StoppingRobot& robot) const {
   for (std::uint32_t r = 0; r < scene_.robots.size(); ++r) {
     if (root(r) != robot.robot) continue;
     for (const RobotLink& link : scene_.robots[r].links) {
-      if (link.object != RobotLink::kNoObject && !scene_.objects[link.object].fixed)
-        is_moved[link.object] = true;
+      if (link.object == RobotLink::kNoObject || scene_.objects[link.object].fixed) continue;
+      is_moved[link.object] = true;
+      robot.links.push_back(link.object);
     }
   }
   std::vector<double> stated(scene_.pairs.size(), 0.0);
@@ -100,16 +104,24 @@ void Stops::add_pairs(StoppingRobot& robot) const {
     const bool is_tracked =
         robot_of_object_[added.other] == kNone && !scene_.objects[added.other].fixed;
     added.tracked = is_tracked ? added.other : kNone;
-    largest = std::max(largest, robot.pairs.back().margin);
-    for (const std::uint32_t object : {pair.first, pair.second})
-      if (robot_of_object_[object] != kNone) robot.beside.push_back(robot_of_object_[object]);
+    added.is_of_stops =
+        !is_tracked && std::all_of(robot.levers.begin() + added.first_lever, robot.levers.end(),
+                                   [&](const Lever& lever) { return stops(lever.variable); });
+    largest = std::max(largest, added.margin);
+    search_->note_variables(pair.first, robot.counts);
+    search_->note_variables(pair.second, robot.counts);
   }
-  std::ranges::sort(robot.beside);
-  robot.beside.erase(std::ranges::unique(robot.beside).begin(), robot.beside.end());
   robot.question.far_enough = largest + kFarBeyondMargin;
   robot.question.margins_by_pair = robot.margins;
   robot.known.resize(scene_.pairs.size());
   robot.question.known_by_pair = robot.known;
+}
+
+// Whether a robot that stops moves this variable, and its stop says where to.
+bool Stops::stops(std::uint32_t variable) const noexcept {
+  if (variable >= scene_.variables.size()) return false;  // what carries a robot
+  const std::uint32_t of = stopping_of_robot_[scene_.variables[variable].robot];
+  return of != kNone && robots_[of].joints.has(variable);
 }
 
 // Room for what write() states in each tick, in an order that stays.
@@ -157,43 +169,56 @@ void Stops::prepare(Report& report) const {
 
 void Stops::write(const Inputs& inputs, const CloudPairs* clouds, const Contacts& contacts,
                   Report& report) noexcept {
+  all_usable_ = true;
   for (StoppingRobot& robot : robots_) {
     robot.joints.read(inputs);
-    for (const WatchedPair& pair : robot.pairs) {
-      if (pair.published == kNone) continue;
-      PairReport& out = report.pairs[pair.published];
-      out.stop_lower = out.status == PairStatus::kAbsent ? kNan : -kInfinity;
-    }
+    all_usable_ = all_usable_ && robot.joints.is_usable();
+    for (const WatchedPair& pair : robot.pairs)
+      if (pair.published != kNone) report.pairs[pair.published].stop_lower = kNan;
   }
-  for (std::size_t i = 0; i < robots_.size(); ++i) {
+  // One that hardly moves has a better bound by the line of the other than by its own.
+  std::ranges::sort(order_, [&](std::uint32_t a, std::uint32_t b) {
+    const double of_a = robots_[a].joints.farthest(), of_b = robots_[b].joints.farthest();
+    return of_a != of_b ? of_a > of_b : a < b;
+  });
+  for (const std::uint32_t i : order_) {
     StoppingRobot& robot = robots_[i];
     RobotStop& out = report.stops[i];
     out = {.robot = robot.robot,
            .clearance = -kInfinity,
            .pair = robot.pairs.empty() ? 0 : robot.pairs.front().pair,
            .time = robot.joints.is_usable() ? robot.joints.time() : kNan};
-    if (!robot.joints.is_usable()) continue;
-    if (const auto unknown = unknown_pair(inputs, contacts, robot)) {
-      out.pair = *unknown;
+    if (is_absent(inputs, robot)) {
+      out.validity = SeparationValidity::kAbsent;
+      out.clearance = kInfinity;
+      out.scaling = out.share = 1.0;
       continue;
     }
-    state_others(inputs, clouds, out.time, robot);
-    write(inputs, robot, report, out);
+    const std::optional<std::uint32_t> unknown = unknown_pair(inputs, contacts, robot);
+    if (unknown) out.pair = *unknown;
+    if (unknown || !robot.joints.is_usable() || !write(inputs, clouds, robot, report, out))
+      for (const WatchedPair& pair : robot.pairs) publish(pair, -kInfinity, report);
   }
 }
 
-// Absent objects limit nothing, and neither do contacts that are allowed now.
+bool Stops::is_absent(const Inputs& inputs, const StoppingRobot& robot) noexcept {
+  return !robot.links.empty() && std::ranges::all_of(robot.links, [&](std::uint32_t link) {
+    return inputs.objects[link].absent;
+  });
+}
+
+// Absent objects limit nothing, and neither do contacts that are as allowed.
 std::optional<std::uint32_t> Stops::unknown_pair(const Inputs& inputs, const Contacts& contacts,
                                                  StoppingRobot& robot) const noexcept {
   std::optional<std::uint32_t> unknown;
-  for (const WatchedPair& pair : robot.pairs) {
-    const TrackedObject& other = inputs.objects[pair.other];
+  for (WatchedPair& pair : robot.pairs) {
     const ObjectPair& of = scene_.pairs[pair.pair];
-    const bool is_absent = inputs.objects[of.first].absent || inputs.objects[of.second].absent;
-    const bool is_allowed = contacts.least_allowed(pair.pair) < kInfinity;
+    const TrackedObject &first = inputs.objects[of.first], &second = inputs.objects[of.second];
+    pair.is_absent = first.absent || second.absent;
     double& margin = robot.margins[pair.pair];
-    margin = is_absent || is_allowed ? -kInfinity : pair.margin;
-    if (!unknown && margin > -kInfinity && !other.known()) unknown = pair.pair;
+    margin = pair.is_absent || contacts.allow(pair.pair) ? -kInfinity : pair.margin;
+    if (!unknown && !pair.is_absent && !(first.is_trusted() && second.is_trusted()))
+      unknown = pair.pair;
   }
   return unknown;
 }
@@ -213,8 +238,8 @@ void Stops::state_others(const Inputs& inputs, const CloudPairs* clouds, double 
     stated.speed = state.input.has_value ? std::abs(state.velocity) : 0.0;
     stated.most = kInfinity;
     const std::uint32_t stopping = stopping_of_robot_[scene_.variables[v].robot];
-    if (!std::ranges::binary_search(robot.beside, scene_.variables[v].robot)) {
-      stated.most = 0.0;  // no pair of this robot has one of its links
+    if (!robot.counts[v]) {
+      stated.most = 0.0;  // no pair of this robot depends on it
       continue;
     }
     // Another robot that stops as well.
@@ -270,8 +295,7 @@ void Stops::note_changes(const Inputs& inputs, const StoppingRobot& robot) noexc
 }
 
 // A bound of this tick falls by what the levers and the other body's motion admit. It is enough if
-// the pair keeps its margin, and either is far or was hardly farther before the stop. Pairs with
-// absent objects need none.
+// the pair keeps its margin, and either is far or was hardly farther before the stop.
 bool Stops::bound_by_levers(const Inputs& inputs, const Report& report,
                             StoppingRobot& robot) noexcept {
   note_changes(inputs, robot);
@@ -279,36 +303,39 @@ bool Stops::bound_by_levers(const Inputs& inputs, const Report& report,
   for (const WatchedPair& pair : robot.pairs) {
     KnownBound& known = robot.known[pair.pair];
     known = {};
+    if (pair.is_absent) continue;
     const double margin = robot.margins[pair.pair];
-    const bool is_known = inputs.objects[pair.other].known();
-    if (is_known && pair.published != kNone) {
+    if (pair.published != kNone) {
       double nearer = pair.model_error + (pair.tracked == kNone ? 0.0 : approaches_[pair.tracked]);
       for (std::uint32_t i = pair.first_lever; i < pair.end_lever; ++i)
         nearer += swept(changes_[robot.levers[i].variable], robot.levers[i].factor);
       const PairReport& now = report.pairs[pair.published];
       const double lower = now.lower - (1.0 + kRelative) * nearer;
       known.lower = lower > 0.0 ? rounded_down(lower) : 0.0;
-      // The bound of another robot holds while this one stops as well, wherever both are.
-      if (pair.tracked == kNone) known.lower = std::max(known.lower, now.stop_lower);
+      if (holds_for_all(pair) && now.stop_lower > known.lower) known.lower = now.stop_lower;
       const double enough = std::min(robot.question.far_enough, now.upper - kTolerance);
       known.is_enough = keeps(known.lower, margin) && known.lower >= enough;
     }
-    // A pair that is not known counts for no stop: unknown_pair() would have ended this one.
-    is_enough = is_enough && (known.is_enough || !is_known);
+    is_enough = is_enough && known.is_enough;
   }
   return is_enough;
 }
 
+void Stops::publish(const WatchedPair& pair, double lower, Report& report) const noexcept {
+  if (pair.published == kNone || pair.is_absent) return;
+  PairReport& of = report.pairs[pair.published];
+  lower = std::min(lower, std::max(0.0, of.lower));
+  const bool replaces = holds_for_all(pair) ? lower > of.stop_lower : lower < of.stop_lower;
+  if (replaces || std::isnan(of.stop_lower)) of.stop_lower = lower;
+}
+
 template <class Bound>
-void Stops::write_bounds(const Inputs& inputs, const StoppingRobot& robot, const Bound& bound,
-                         Report& report, RobotStop& out) const noexcept {
+void Stops::write_bounds(const StoppingRobot& robot, const Bound& bound, Report& report,
+                         RobotStop& out) const noexcept {
   out.clearance = kInfinity;
   for (const WatchedPair& pair : robot.pairs) {
     const double lower = std::max(0.0, bound(pair.pair) - kRounding);
-    if (pair.published != kNone && inputs.objects[pair.other].known()) {
-      PairReport& of = report.pairs[pair.published];
-      of.stop_lower = std::max(of.stop_lower, std::min(lower, std::max(0.0, of.lower)));
-    }
+    publish(pair, lower, report);
     const double margin = robot.margins[pair.pair];
     if (margin == -kInfinity) continue;
     const double left = margin > 0.0 ? rounded_down(lower - margin) : lower;
@@ -319,32 +346,33 @@ void Stops::write_bounds(const Inputs& inputs, const StoppingRobot& robot, const
   }
 }
 
-void Stops::write(const Inputs& inputs, StoppingRobot& robot, Report& report,
-                  RobotStop& out) noexcept {
-  out.validity =
+bool Stops::write(const Inputs& inputs, const CloudPairs* clouds, StoppingRobot& robot,
+                  Report& report, RobotStop& out) noexcept {
+  state_others(inputs, clouds, out.time, robot);
+  const SeparationValidity validity =
       robot.joints.is_assumed() ? SeparationValidity::kAssumed : SeparationValidity::kMeasured;
   if (bound_by_levers(inputs, report, robot)) {
     write_bounds(
-        inputs, robot, [&](std::uint32_t p) { return robot.known[p].lower; }, report, out);
+        robot, [&](std::uint32_t p) { return robot.known[p].lower; }, report, out);
+    out.validity = validity;
     out.scaling = out.share = 1.0;
-    return;
+    return true;
   }
   Question& question = robot.question;
   question.only_verdicts = false;
   question.work_limit = std::min(scene_.budget, kMostWork);
   question.instant = robot.joints.is_on_line() ? kShare : 1.0;
   robot.joints.write_motion(1.0, question.motion);
-  if (search_->ask(question, robot.answer)) {
-    out.validity = SeparationValidity::kUnknown;
-    return;
-  }
+  if (search_->ask(question, robot.answer)) return false;
   write_bounds(
-      inputs, robot, [&](std::uint32_t p) { return robot.answer.lower_by_pair[p]; }, report, out);
+      robot, [&](std::uint32_t p) { return robot.answer.lower_by_pair[p]; }, report, out);
   const MarginAnswer& decided = robot.answer.margins.front();
+  out.validity = validity;
   out.scaling = out.share = 1.0;
-  if (decided.verdict == Verdict::kFree) return;
+  if (decided.verdict == Verdict::kFree) return true;
   out.share = std::clamp(decided.above_until / StoppingJoints::kDuration, 0.0, 1.0);
   out.scaling = largest_scaling(out.share, robot);
+  return true;
 }
 
 // On one line, a lower speed ends on a part of it. Else a share of the speed has to be proven: for

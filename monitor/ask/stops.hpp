@@ -45,6 +45,8 @@ class Stops {
     std::uint32_t first_lever = 0, end_lever = 0;
     std::uint32_t tracked = 0;  // neither fixed nor a link; Scene::objects, or kNone
     double model_error = 0.0;   // m
+    bool is_of_stops = false;   // only joints of robots that state stops move it
+    bool is_absent = false;     // in this tick
   };
   struct StoppingRobot {
     StoppingRobot(const Scene& scene, std::uint32_t of);
@@ -53,21 +55,25 @@ class Stops {
     Question question;
     Answer answer;
     StoppingJoints joints;
+    std::vector<std::uint32_t> links;  // that move with it; Scene::objects
     std::vector<WatchedPair> pairs;
-    std::vector<std::uint32_t> beside;  // robots with a link in one of them, ascending
-    std::vector<Lever> levers;          // of all pairs
-    std::vector<double> margins;        // by Scene::pairs, in this tick
-    std::vector<KnownBound> known;      // the same
+    std::vector<bool> counts;       // by variable, as Lever: whether it moves an object of a pair
+    std::vector<Lever> levers;      // of all pairs
+    std::vector<double> margins;    // by Scene::pairs, in this tick
+    std::vector<KnownBound> known;  // the same
   };
   static constexpr std::uint32_t kNone = ~0u;
 
   void add_pairs(StoppingRobot& robot) const;
   void add_others(StoppingRobot& robot) const;
   void make_room(StoppingRobot& robot);
+  [[nodiscard]] bool stops(std::uint32_t variable) const noexcept;
 
+  [[nodiscard]] static bool is_absent(const Inputs& inputs, const StoppingRobot& robot) noexcept;
   void state_others(const Inputs& inputs, const CloudPairs* clouds, double time,
                     StoppingRobot& robot) const noexcept;
-  // Writes the margins of this tick. Returns the first pair with one that is not known.
+  // Writes which pairs and margins count in this tick. Returns the first pair with an object that
+  // may be anywhere.
   [[nodiscard]] std::optional<std::uint32_t> unknown_pair(const Inputs& inputs,
                                                           const Contacts& contacts,
                                                           StoppingRobot& robot) const noexcept;
@@ -75,20 +81,30 @@ class Stops {
   [[nodiscard]] bool bound_by_levers(const Inputs& inputs, const Report& report,
                                      StoppingRobot& robot) noexcept;
   void note_changes(const Inputs& inputs, const StoppingRobot& robot) noexcept;
+  // Of two robots whose stops move a pair, each has a bound for the time of its own stop. What
+  // moves by their stops alone is bounded for as long as both take. Else the lower bound counts.
+  [[nodiscard]] bool holds_for_all(const WatchedPair& pair) const noexcept {
+    return pair.is_of_stops && all_usable_;
+  }
+  void publish(const WatchedPair& pair, double lower, Report& report) const noexcept;
   // `bound`: by pair.
   template <class Bound>
-  void write_bounds(const Inputs& inputs, const StoppingRobot& robot, const Bound& bound,
-                    Report& report, RobotStop& out) const noexcept;
+  void write_bounds(const StoppingRobot& robot, const Bound& bound, Report& report,
+                    RobotStop& out) const noexcept;
   [[nodiscard]] double largest_scaling(double clear_share, StoppingRobot& robot) noexcept;
-  void write(const Inputs& inputs, StoppingRobot& robot, Report& report, RobotStop& out) noexcept;
+  // Returns whether the stop is known.
+  [[nodiscard]] bool write(const Inputs& inputs, const CloudPairs* clouds, StoppingRobot& robot,
+                           Report& report, RobotStop& out) noexcept;
 
   const Scene& scene_;
   std::vector<StoppingRobot> robots_;
+  std::vector<std::uint32_t> order_;              // of robots_, in this tick
   std::vector<std::uint32_t> stopping_of_robot_;  // by Scene::robots; kNone: states none
   std::vector<std::uint32_t> robot_of_object_;    // kNone: no link
   std::vector<std::uint32_t> tracked_;            // objects that are neither fixed nor links
   // Until the robot stands: by variable, rad or m; by object that is neither fixed nor a link, m.
   std::vector<double> changes_, approaches_;
+  bool all_usable_ = false;  // in this tick: all robots that state stops
   std::unique_ptr<MotionSearch> search_;
 };
 

@@ -13,6 +13,11 @@ namespace clearance {
 [[nodiscard]] inline double rounded_up(double x) noexcept { return x + std::abs(x) * 0x1p-50; }
 [[nodiscard]] inline double rounded_down(double x) noexcept { return x - std::abs(x) * 0x1p-50; }
 
+// The same for a figure that may be infinite, and stays so.
+[[nodiscard]] inline double rounded_down_if_finite(double x) noexcept {
+  return std::isinf(x) ? x : rounded_down(x);
+}
+
 // The path length of a point at the distance `arm` under a rotation by `turn`, rad. Here 0 *
 // infinity is 0: without rotation, points at infinity do not move either.
 [[nodiscard]] inline double swept(double turn, double arm) noexcept {

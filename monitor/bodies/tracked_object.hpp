@@ -84,6 +84,8 @@ struct alignas(64) TrackedObject {
   [[nodiscard]] bool known() const noexcept {
     return input.has_value && may_have_moved < kInfinity;
   }
+  // True if that bound is believed: nothing contradicts its poses or joints.
+  [[nodiscard]] bool is_trusted() const noexcept { return known() && !input.contradicted; }
   // True if `twist` is its present velocity. A late object may have moved arbitrarily since its
   // stamp.
   [[nodiscard]] bool velocity_known() const noexcept { return twist_known && !input.late; }

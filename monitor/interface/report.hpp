@@ -59,9 +59,9 @@ struct PairReport {
   // cell states (config/KEYS.md). `distance`, witnesses and normal are those of the model. NaN if
   // the pair is unknown.
   double model_error = 0.0;
-  // m: a lower bound of the distance until a robot stands that is told to stop now
-  // (RobotStop), rounded to no worse than 0. -infinity if that is not known; NaN if neither object
-  // moves with a robot that states stops.
+  // m: a lower bound of the distance until all robots stand that are told to stop now and move one
+  // of the two (RobotStop), rounded to no worse than 0. -infinity if that is not known; NaN if
+  // neither object moves with a robot that states stops.
   double stop_lower = std::numeric_limits<double>::quiet_NaN();
   // The closest points, world. Of objects that overlap: the point of each that lies deepest in the
   // other along the normal, as in DistanceResult. Points and normal are NaN if an image has no
@@ -173,6 +173,7 @@ struct RobotStop {
   std::uint32_t robot = 0;  // index into Scene::robots
   // kMeasured: all velocities are known. kAssumed: limits stand in for some. kUnknown: an input
   // that a pair of the robot depends on is not known, or the robot is late; `scaling` is 0.
+  // kAbsent: all of its links are; it limits nothing.
   SeparationValidity validity = SeparationValidity::kUnknown;
   // The largest share of its present speed, 0 to 1, from which it stops clear of everything by the
   // stated margins. 1 also if it stands beyond them; 0 if no share is certified.

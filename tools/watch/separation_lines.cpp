@@ -36,8 +36,10 @@ std::span<const clearance_msg_RobotStop> stops(const Feed& feed) {
 
 std::string text_of(const Feed& feed, const clearance_msg_RobotStop& stop) {
   const std::string name = feed.robot_name(stop.robot), pair = feed.pair_name(stop.pair);
-  if (static_cast<SeparationValidity>(stop.validity) == SeparationValidity::kUnknown)
+  const auto validity = static_cast<SeparationValidity>(stop.validity);
+  if (validity == SeparationValidity::kUnknown)
     return fmt::format("{} stops: not known, scaling 0, {}", name, pair);
+  if (validity == SeparationValidity::kAbsent) return fmt::format("{}: absent, scaling 1", name);
   if (stop.scaling < 1.0)
     return fmt::format(
         "{} stops: scaling {:.2f}, {:.0f} % of its motion is clear, {}, {:.3f} m {} the margin, "

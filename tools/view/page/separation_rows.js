@@ -6,13 +6,14 @@ import { mm, put } from "./format.js";
 export const VALIDITY = ["not known", "by stated speeds", "measured", "absent"];
 const AGAIN_MS = 125;
 const FIGURES = 7; // cells of a row after the zone and the pair
+const ABSENT = [["-", "-", "-", "1.00", "any", "-", "-"], ""];
 
 const metresPerSecond = (value) => (value === Infinity ? "any" : Number.isFinite(value) ? value.toFixed(2) : "?");
 
 // Returns [texts of the figures, class] of a zone; `pairs` are those of the message.
 function figuresOf({ zone, pair, validity, remaining, speed_limit, scaling }, pairs) {
   const { clearance, protective_distance } = pairs.find((each) => each.zone === zone && each.pair === pair) ?? {};
-  if (validity === 3) return [["-", "-", "-", "1.00", "any", "-", "-"], ""];
+  if (validity === 3) return ABSENT;
   if (validity === 0) return [["?", "?", "?", "0.00", "0.00", "-", "-"], "lost"];
   return [[mm(clearance, 0), mm(protective_distance, 0), mm(remaining, 0), scaling.toFixed(2), metresPerSecond(speed_limit), "-", "-"], scaling < 1 ? "alarm" : ""];
 }
@@ -21,6 +22,7 @@ function figuresOf({ zone, pair, validity, remaining, speed_limit, scaling }, pa
 // state, the scaling, the share of its motion that is clear, and the time until it stands.
 function figuresOfStop({ validity, clearance, scaling, share, time }, lower) {
   if (validity === 0) return [["?", "-", "?", "0.00", "-", "?", "?"], "lost"];
+  if (validity === 3) return ABSENT;
   const figures = [Number.isFinite(lower) ? mm(lower, 0) : "-", "-", mm(clearance, 0), scaling.toFixed(2), "-", `${Math.floor(100 * share)} %`, time.toFixed(2)];
   return [figures, scaling < 1 ? "alarm" : ""];
 }
