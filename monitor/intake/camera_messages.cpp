@@ -11,7 +11,7 @@
 namespace clearance {
 namespace {
 
-constexpr std::uint8_t kFloat32 = 7;  // sensor_msgs/PointField
+constexpr std::uint8_t kUint32 = 6, kFloat32 = 7, kFloat64 = 8;  // sensor_msgs/PointField
 constexpr bool kIsBigEndian = std::endian::native == std::endian::big;
 
 std::span<const std::byte> bytes_of(const dds_sequence_octet& data) noexcept {
@@ -49,6 +49,27 @@ bool is_shared(const sensor_msgs_msg_dds__PointCloud2_& message, std::string_vie
   });
 }
 
+// The first field with a name that drivers of rotating sensors give to times. Returns false if its
+// type does not tell its unit.
+bool find_times(const sensor_msgs_msg_dds__PointCloud2_& message, PointsView& out) noexcept {
+  constexpr std::array<std::string_view, 5> kNames{"t", "time", "timestamp", "time_stamp",
+                                                   "offset_time"};
+  const std::span fields(message.fields._buffer, message.fields._length);
+  const auto found = std::ranges::find_if(fields, [&](const auto& field) {
+    return std::ranges::find(kNames, std::string_view(field.name)) != kNames.end();
+  });
+  if (found == fields.end()) return true;
+  using Times = PointsView::Times;
+  const std::uint8_t type = found->datatype;
+  out.times = type == kUint32    ? Times::kUint32
+              : type == kFloat32 ? Times::kFloat32
+              : type == kFloat64 ? Times::kFloat64
+                                 : Times::kNotSent;
+  out.time = found->offset;
+  return out.times != Times::kNotSent && found->count <= 1 &&
+         std::uint64_t{found->offset} + kFieldBytes[type] <= message.point_step;
+}
+
 bool is_identity_or_zero(const double (&r)[9]) noexcept {
   constexpr std::array<double, 9> kIdentity{1, 0, 0, 0, 1, 0, 0, 0, 1};
   return std::equal(kIdentity.begin(), kIdentity.end(), r) ||
@@ -75,11 +96,11 @@ constexpr auto kWords = [] {
       {kStep, "a step below a row", "the step is smaller than a row or a point"},
       {kShortData, "half a frame", "it has fewer bytes than its size says"},
       {kFields, "fields that are no points",
-       "x, y and z are not one float32 each within the point"},
+       "x, y and z are not one float32 each within the point, or a time is no uint32 or float"},
       {kLayout, "a layout that cannot be",
        "numbers overlap, or the rows or angles are not those of its numbers"},
       {kLongScan, "a scan longer than its stamp error",
-       "its rays were measured over more time than 'stamp_error_ms' states"},
+       "its rays or points were measured over more time than 'stamp_error_ms' states"},
       {kIntrinsics, "no pinhole camera", "the intrinsics are not those of a pinhole camera"},
       {kDistorted, "not rectified",
        "it has a distortion, rotation, binning or region: use the rectified image"},
@@ -165,7 +186,7 @@ FrameFault view(const sensor_msgs_msg_dds__PointCloud2_& message, std::size_t mo
   if (message.is_bigendian != kIsBigEndian) return FrameFault::kByteOrder;
   PointsView found;
   if (!find_field(message, "x", found.x) || !find_field(message, "y", found.y) ||
-      !find_field(message, "z", found.z)) {
+      !find_field(message, "z", found.z) || !find_times(message, found)) {
     return FrameFault::kFields;
   }
   // A row_step of 0 is common where there is one row.

@@ -27,9 +27,10 @@ enum class FrameFault : std::uint8_t {
   kTooManyPixels,  // more than the memory that the cell fixes
   kStep,           // rows or points overlap: step 0, or below the size of their content
   kShortData,      // fewer bytes than the size says: half a frame
-  kFields,         // x, y or z is missing, twice there, no single float32, or outside of the point
+  kFields,         // x, y or z is missing, twice there, no single float32, or outside of the point;
+                   // or a time of a type whose unit is not known
   kLayout,         // numbers overlap, or rows, angles or counts are not those of its numbers
-  kLongScan,       // a scan whose rays were measured over more time than the stamp is off
+  kLongScan,       // its rays or points were measured over more time than the stamp is off
   kIntrinsics,  // focal lengths that are not positive, numbers that are not finite, or P unlike K
   kDistorted,   // a distortion, rotation, binning or region: the image is not a plain pinhole's
   // Faults that the messages before it show.
@@ -70,9 +71,12 @@ inline constexpr std::size_t kFrameFaults = 38;
 
 // The points of a PointCloud2: x, y and z are float32 at these offsets of each point.
 struct PointsView {
+  // When each point was measured: an offset in ns, or a time in s or ns.
+  enum class Times : std::uint8_t { kNotSent, kUint32, kFloat32, kFloat64 };
   std::uint32_t width = 0, height = 0;  // height 1: not organised
   std::size_t point_step = 0, row_step = 0;
-  std::size_t x = 0, y = 0, z = 0;
+  std::size_t x = 0, y = 0, z = 0, time = 0;
+  Times times = Times::kNotSent;
   std::span<const std::byte> bytes;
 };
 

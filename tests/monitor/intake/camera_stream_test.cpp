@@ -307,6 +307,8 @@ TEST_F(CameraStreamTest, CloudsThatLieAboutTheirFieldsAreRefusedByCause) {
   EXPECT_EQ(with([](CloudText& t) { t.fields[2].offset = 17; }), Fault::kFields);
   EXPECT_EQ(with([](CloudText& t) { t.fields[2].offset = 0xFFFFFFFE; }), Fault::kFields);
   EXPECT_EQ(with([](CloudText& t) { t.fields[3].name = "x"; }), Fault::kFields);
+  EXPECT_EQ(with([](CloudText& t) { t.fields[3] = {"t", 16, 4}; }), Fault::kFields);
+  EXPECT_EQ(with([](CloudText& t) { t.fields[3] = {"timestamp", 16, 8}; }), Fault::kFields);
   EXPECT_EQ(with([](CloudText& t) { t.point_step = 0; }), Fault::kFields);
   EXPECT_EQ(with([](CloudText& t) { t.is_bigendian = 1; }), Fault::kByteOrder);
   EXPECT_EQ(with([](CloudText& t) { t.width = 0; }), Fault::kNoPixels);
