@@ -64,6 +64,7 @@ struct Attach {
   // True if it may lie farther than 0.5 m from its carrier and from all that it may touch. A
   // running daemon refuses that otherwise.
   bool far = false;
+  std::optional<double> mass = {};  // kg; nothing: what its entry says
 };
 
 // An attached object becomes a fixed one.

@@ -221,6 +221,7 @@ Fault ChangeMaker::operator()(const Attach& change) {
     set(attached, "pose", pose(*change.carrier_from_object));
     if (!change.touch.empty()) set(attached, "touch", texts_node(change.touch));
     set(node, "attached", std::move(attached));
+    if (change.mass) set(node, "mass", number_node(*change.mass));
     return std::nullopt;
   });
 }

@@ -10,6 +10,7 @@
 #include <utility>
 
 #include "config/cell/contact_reader.hpp"
+#include "config/cell/object_reader.hpp"
 #include "config/text/file_bytes.hpp"
 #include "config/text/sentences.hpp"
 #include "config/text/spelling.hpp"
@@ -53,6 +54,7 @@ class ChangeKeys {
     change.carrier_from_object = pose();
     names("touch", change.touch);
     fit(change);
+    if (const double mass = read_mass(map_, diagnostics_); mass < kInfinity) change.mass = mass;
   }
   void read(Detach& change) {
     name("object", change.object);

@@ -307,11 +307,18 @@ YamlNode attached_entry(const std::string& name, const std::string& group,
   set(attached, "to", text_node(attachment.to));
   set(attached, "pose", pose_node(attachment.carrier_from_object, unit));
   set(entry, "attached", std::move(attached));
-  if (attachment.weight > 0.0 && std::isfinite(attachment.weight))
-    set(entry, "mass", number_node(attachment.weight));
+  set_mass(mass_of(attachment.weight), entry);
   set(entry, "parts", std::move(parts));
   add_touch(attachment.touch, entry);
   return entry;
+}
+
+std::optional<double> mass_of(double weight) {
+  return weight > 0.0 && std::isfinite(weight) ? std::optional(weight) : std::nullopt;
+}
+
+void set_mass(std::optional<double> mass, YamlNode& entry) {
+  if (mass) set(entry, "mass", number_node(*mass));
 }
 
 void add_touch(const std::vector<std::string>& names, YamlNode& entry) {

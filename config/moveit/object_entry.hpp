@@ -1,6 +1,7 @@
 // The body of a collision object as an entry of `objects` of a cell.
 #pragma once
 
+#include <optional>
 #include <string>
 #include <variant>
 #include <vector>
@@ -55,6 +56,9 @@ struct Attachment {
 [[nodiscard]] YamlNode attached_entry(const std::string& name, const std::string& group,
                                       const Attachment& attachment, YamlNode parts,
                                       LengthUnit unit);
+// The mass that a weight of a message states, kg; nothing: it is not known.
+[[nodiscard]] std::optional<double> mass_of(double weight);
+void set_mass(std::optional<double> mass, YamlNode& entry);
 // Adds names to those that an attached object may touch.
 void add_touch(const std::vector<std::string>& names, YamlNode& entry);
 

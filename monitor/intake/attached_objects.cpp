@@ -45,8 +45,8 @@ void MessageTranslator::attach_as_it_is(const AttachedCollisionObject& message,
   object.is_gone = false;
   object.carrier = message.link_name;
   object.pose = carrier_from_object;
-  result_.changes.emplace_back(
-      Attach{id, message.link_name, carrier_from_object, std::move(touch), kAnyDepth, true});
+  result_.changes.emplace_back(Attach{id, message.link_name, carrier_from_object, std::move(touch),
+                                      kAnyDepth, true, mass_of(message.weight)});
 }
 
 void MessageTranslator::attach_with_shapes(const AttachedCollisionObject& message,
@@ -89,6 +89,7 @@ void MessageTranslator::append_attached(const AttachedCollisionObject& message,
   KnownObject changed = *present;
   add_parts(changed, message.object, std::move(body), path + "object.");
   add_touch(touch_of(message), changed.entry);
+  set_mass(mass_of(message.weight), changed.entry);
   put(id, std::move(changed));
 }
 

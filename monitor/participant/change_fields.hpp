@@ -42,6 +42,7 @@ void visit_fields(const Visit& visit, Message& m, Of& c) {
     visit("touch", m.touch, c.touch, kName);
     visit("overlap", m.overlap, c.overlap);
     visit("far", m.far, c.far);
+    visit("mass", m.mass, c.mass);
   } else if constexpr (std::is_same_v<Change, Detach> || std::is_same_v<Change, Place>) {
     visit("object", m.object, c.object, kName);
     visit("world_from_object", m.world_from_object, c.world_from_object);

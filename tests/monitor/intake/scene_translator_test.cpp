@@ -177,7 +177,9 @@ TEST_F(MoveItCell, PickAndPlaceGivesTheCellThatAPersonWouldWrite) {
   attach.link_name = "hand";
   attach.object = operation(Operation::kAdd, "part");
   attach.touch_links = {"hand", "finger", "tip"};
+  attach.weight = 1.5;
   EXPECT_THAT(send(attach).refused, IsEmpty());
+  EXPECT_EQ(object("part")->mass, 1.5);
   const RobotBase* base = carried("part");
   ASSERT_NE(base, nullptr);
   EXPECT_EQ(cell_.scene.robots[base->robot].links[base->link].name, "hand");
@@ -203,7 +205,7 @@ TEST_F(MoveItCell, PickAndPlaceGivesTheCellThatAPersonWouldWrite) {
   std::string by_hand = kMoveItCell;
   by_hand.insert(by_hand.find("pairs:\n"),
                  "  - {name: part, groups: [moveit], fixed: true, parts: [{box: {size: [100, 200, "
-                 "300]}}], pose: {xyz: [1000, -2000, 750]}}\n");
+                 "300]}}], pose: {xyz: [1000, -2000, 750]}, mass: 1.5}\n");
   EXPECT_EQ(cell_.yaml, by_hand);
 
   send(operation(Operation::kRemove, "part"));
@@ -232,7 +234,10 @@ TEST_F(MoveItCell, AnObjectWithShapesIsAttachedWhereTheMessageHasIt) {
   message.touch_links = {"finger"};
   EXPECT_EQ(refused(message), "object.pose") << "MoveIt loses the pose of an only shape";
   message.object.primitives.push_back({SolidPrimitive::kSphere, {0.02}});
+  EXPECT_EQ(object("tool")->mass, kInfinity);
+  message.weight = 2.5;
   send(message);
+  EXPECT_EQ(object("tool")->mass, 2.5) << "of all its parts";
   expect_at(carried("tool")->base_from_root, matrix(kInObject));
   ASSERT_EQ(object("tool")->parts.size(), 3u);
   expect_at(object("tool")->parts[1].object_from_part, matrix(kPlace));

@@ -28,7 +28,7 @@ std::vector<CellChange> every_change() {
           RemoveObject{"bin_7"},
           SetAbsent{"bin", true},
           SetAbsent{"bin", false},
-          Attach{"part", "hand", turned(), {"finger", "palm"}, 0.002, true},
+          Attach{"part", "hand", turned(), {"finger", "palm"}, 0.002, true, 1.2},
           Attach{"part", "hand"},
           Detach{"part", turned()},
           Detach{"part"},
@@ -112,6 +112,7 @@ TEST(CommandMessage, KeepsEveryFieldOfEveryChange) {
   EXPECT_THAT(attach.touch, testing::ElementsAre("finger", "palm"));
   EXPECT_EQ(attach.overlap, 0.002);
   EXPECT_TRUE(attach.far);
+  EXPECT_EQ(attach.mass, 1.2);
   EXPECT_FALSE(std::get<Attach>(read.changes[7]).carrier_from_object);
   EXPECT_FALSE(std::get<Attach>(read.changes[7]).overlap);
   EXPECT_EQ(std::get<SetPair>(read.changes[24]).rule, SetPair::Rule::kLeaveOut);

@@ -46,7 +46,7 @@ struct ChangeText {
   std::string operator()(const RemoveObject& c) const { return row("RemoveObject", c.object); }
   std::string operator()(const SetAbsent& c) const { return row("SetAbsent", c.object, c.absent); }
   std::string operator()(const Attach& c) const {
-    return row("Attach", c.object, c.to, c.carrier_from_object, c.touch, c.overlap, c.far);
+    return row("Attach", c.object, c.to, c.carrier_from_object, c.touch, c.overlap, c.far, c.mass);
   }
   std::string operator()(const Detach& c) const {
     return row("Detach", c.object, c.world_from_object);
