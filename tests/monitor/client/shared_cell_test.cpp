@@ -141,12 +141,13 @@ TEST_F(ASharedCell, HasAShareLateThatIsSilentAlthoughItsStampsAreAhead) {
   ASSERT_TRUE(eventually([&] {
     left.report(cycle);
     right.report(cycle++, dds_time() + 350'000'000);
-    return whole->next(milliseconds(50)) && whole->is_whole();
-  }));
+    return whole->next(milliseconds(50)) && whole->is_whole() && !whole->fail_safe();
+  })) << name(whole->reason());
   EXPECT_TRUE(eventually([&] {
     left.report(cycle++);
     return whole->next(milliseconds(50)) && !whole->is_whole();
   }));
+  EXPECT_TRUE(whole->fail_safe());
   EXPECT_LT(dds_time() - last, 3'000'000'000);
   const ShareCheck& check = whole->shares()[1];
   EXPECT_EQ(check.name, "right");
