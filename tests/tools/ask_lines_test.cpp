@@ -72,6 +72,11 @@ TEST_F(AskOfALine, RefusesListsWithAnEntryTooMany) {
   refused(R"(, "joints_of_others": {"x": [0, 1, 9]})", "[position, age]");
 }
 
+TEST_F(AskOfALine, NamesTheKeyOfAValueThatIsNone) {
+  EXPECT_EQ(error(R"(, "velocities": "x")").find("\"velocities\": "), 0u);
+  EXPECT_EQ(error(R"(, "others": 3)").find("\"others\": "), 0u);
+}
+
 TEST_F(AskOfALine, RefusesAKeyThatStandsTwice) {
   EXPECT_NE(error(R"(, "positions": [[0], [0.1]])").find("\"positions\" again"), std::string::npos);
   EXPECT_NE(error(R"(, "poses": {"a": {}, "a": {}})").find("\"a\" again"), std::string::npos);

@@ -98,6 +98,23 @@ TEST_F(RelayedCommands, ThatOneShareRefusesInTheDryRunHaveItsStatusAndChangeNone
   expect_no_share_was_asked();
 }
 
+// Each share counts the cycles of its own daemon.
+TEST_F(RelayedCommands, ThatAllowAContactUpToACycleReachNoShare) {
+  const AllowContact contact{.contact = "push",
+                             .a = "a",
+                             .b = "b",
+                             .depth = 0.01,
+                             .end = {.last_cycle = 900},
+                             .by = "planner",
+                             .reason = "it pushes"};
+  const auto result =
+      commands.send({SetMargin{.object = "a", .m = 0.01}, contact}, {}, std::chrono::seconds(40));
+  ASSERT_TRUE(result) << merge.output();
+  EXPECT_EQ(result->status, CommandStatus::kRefused);
+  EXPECT_EQ(result->change, 1u);
+  for (const auto& [name, share] : shares) EXPECT_EQ(share.tried + share.asked, 0) << name;
+}
+
 TEST_F(RelayedCommands, ThatWouldLeadToDifferentScenesChangeNone) {
   shares["right floor"].answers = [](const Command&, CommandResult& result) {
     result.scene_revision = kOther;

@@ -184,6 +184,7 @@ TEST(PermitsOfStops, HoldIfTheCellLacksAJointOfTheRobot) {
   };
   EXPECT_TRUE(comes({"push", "shoulder"}, 1.0, Cause::kNone)) << daemon.output();
   EXPECT_TRUE(comes({"shoulder", "wrist"}, 0.0, Cause::kUnknown)) << daemon.output();
+  EXPECT_TRUE(comes({"older", "push"}, 0.0, Cause::kUnknown)) << "one ends with it";
 }
 
 TEST_F(PermitReaderTest, HoldsAfterTheDaemonIsKilledAndUntilAnotherOneIsHeard) {

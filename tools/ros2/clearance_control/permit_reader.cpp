@@ -146,13 +146,22 @@ const clearance_msg_Catalogue* PermitReader::names_of(std::uint64_t revision) {
   return names_.message(revision);
 }
 
+// A cell may give the names of a robot's joints a prefix: one for all of them.
 bool PermitReader::has_joints(std::uint64_t revision) {
   const clearance_msg_Catalogue* const names = names_of(revision);
-  return names != nullptr && std::ranges::all_of(options_.joints, [&](const std::string& joint) {
-           return std::ranges::any_of(list(names->joints), [&](const auto& of_cell) {
-             return std::string_view(of_cell.name).ends_with(joint);
-           });
-         });
+  if (names == nullptr) return false;
+  if (options_.joints.empty()) return true;
+  const auto has = [&](const std::string& name) {
+    return std::ranges::any_of(list(names->joints),
+                               [&](const auto& of) { return name == of.name; });
+  };
+  return std::ranges::any_of(list(names->joints), [&](const auto& of) {
+    std::string prefix = of.name;
+    if (!prefix.ends_with(options_.joints.front())) return false;
+    prefix.resize(prefix.size() - options_.joints.front().size());
+    return std::ranges::all_of(options_.joints,
+                               [&](const std::string& joint) { return has(prefix + joint); });
+  });
 }
 
 void PermitReader::limit_by_zones(Permit& permit) {
