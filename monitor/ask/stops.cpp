@@ -178,8 +178,8 @@ void Stops::write(const Inputs& inputs, const CloudPairs* clouds, const Contacts
   }
   // One that hardly moves has a better bound by the line of the other than by its own.
   std::ranges::sort(order_, [&](std::uint32_t a, std::uint32_t b) {
-    const double of_a = robots_[a].joints.farthest(), of_b = robots_[b].joints.farthest();
-    return of_a != of_b ? of_a > of_b : a < b;
+    const double first = robots_[a].joints.farthest(), second = robots_[b].joints.farthest();
+    return first != second ? first > second : a < b;
   });
   for (const std::uint32_t i : order_) {
     StoppingRobot& robot = robots_[i];

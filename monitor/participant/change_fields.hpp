@@ -21,8 +21,7 @@ enum class ChangeText { kName, kMayBeEmpty, kYaml };
 template <class Change, class Visit, class Message, class Of>
 void visit_fields(const Visit& visit, Message& m, Of& c) {
   using enum ChangeText;
-  if constexpr (std::is_same_v<Change, AddObject> || std::is_same_v<Change, ReplaceObject> ||
-                std::is_same_v<Change, ReplaceCell>) {
+  if constexpr (requires { c.yaml; }) {
     visit("yaml", m.yaml, c.yaml, kYaml);
   } else if constexpr (std::is_same_v<Change, AddFromTemplate>) {
     visit("template_name", m.template_name, c.template_name, kName);
