@@ -60,7 +60,7 @@ Stops::StoppingRobot::StoppingRobot(const Scene& scene, std::uint32_t of)
   question.contacts.emplace();  // a contact in force has no margin here
 }
 
-// The robot's own links, and those of what stands on it.
+// The pairs that its joints move: of its own links, and of those of what stands on it.
 void Stops::add_pairs(StoppingRobot& robot) const {
   std::vector<bool> is_moved(scene_.objects.size(), false);
   robot.counts.resize(scene_.variables.size() + 2 * scene_.robots.size());
@@ -93,20 +93,24 @@ void Stops::add_pairs(StoppingRobot& robot) const {
     const ObjectPair& pair = scene_.pairs[p];
     const std::uint32_t place = pair.publish ? published++ : kNone;
     if (!is_moved[pair.first] && !is_moved[pair.second]) continue;
-    robot.pairs.push_back({.pair = p,
-                           .other = is_moved[pair.first] ? pair.second : pair.first,
-                           .published = place,
-                           .margin = stated[p],
-                           .first_lever = static_cast<std::uint32_t>(robot.levers.size())});
-    WatchedPair& added = robot.pairs.back();
+    const std::uint32_t other = is_moved[pair.first] ? pair.second : pair.first;
+    const bool is_tracked = robot_of_object_[other] == kNone && !scene_.objects[other].fixed;
+    WatchedPair added{.pair = p,
+                      .published = place,
+                      .margin = stated[p],
+                      .first_lever = static_cast<std::uint32_t>(robot.levers.size()),
+                      .tracked = is_tracked ? other : kNone};
     added.model_error = search_->add_levers(p, robot.levers);
     added.end_lever = static_cast<std::uint32_t>(robot.levers.size());
-    const bool is_tracked =
-        robot_of_object_[added.other] == kNone && !scene_.objects[added.other].fixed;
-    added.tracked = is_tracked ? added.other : kNone;
-    added.is_of_stops =
-        !is_tracked && std::all_of(robot.levers.begin() + added.first_lever, robot.levers.end(),
-                                   [&](const Lever& lever) { return stops(lever.variable); });
+    const std::span levers = std::span(robot.levers).subspan(added.first_lever);
+    const auto is_own = [&](const Lever& lever) { return robot.joints.has(lever.variable); };
+    if (std::ranges::none_of(levers, is_own)) {
+      robot.levers.resize(added.first_lever);
+      continue;
+    }
+    const auto is_of_a_stop = [&](const Lever& lever) { return stops(lever.variable); };
+    added.is_of_stops = !is_tracked && std::ranges::all_of(levers, is_of_a_stop);
+    robot.pairs.push_back(added);
     largest = std::max(largest, added.margin);
     search_->note_variables(pair.first, robot.counts);
     search_->note_variables(pair.second, robot.counts);
@@ -159,12 +163,7 @@ void Stops::make_room(StoppingRobot& robot) {
 }
 
 void Stops::prepare(Report& report) const {
-  for (const StoppingRobot& robot : robots_) {
-    report.stops.push_back({.robot = robot.robot,
-                            .clearance = -kInfinity,
-                            .pair = robot.pairs.empty() ? 0 : robot.pairs.front().pair,
-                            .time = kNan});
-  }
+  for (const StoppingRobot& robot : robots_) report.stops.push_back(unknown_stop(robot));
 }
 
 void Stops::write(const Inputs& inputs, const CloudPairs* clouds, const Contacts& contacts,
@@ -184,10 +183,8 @@ void Stops::write(const Inputs& inputs, const CloudPairs* clouds, const Contacts
   for (const std::uint32_t i : order_) {
     StoppingRobot& robot = robots_[i];
     RobotStop& out = report.stops[i];
-    out = {.robot = robot.robot,
-           .clearance = -kInfinity,
-           .pair = robot.pairs.empty() ? 0 : robot.pairs.front().pair,
-           .time = robot.joints.is_usable() ? robot.joints.time() : kNan};
+    out = unknown_stop(robot);
+    if (robot.joints.is_usable()) out.time = robot.joints.time();
     if (is_absent(inputs, robot)) {
       out.validity = SeparationValidity::kAbsent;
       out.clearance = kInfinity;

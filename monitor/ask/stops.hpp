@@ -4,6 +4,7 @@
 #pragma once
 
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <span>
@@ -38,7 +39,6 @@ class Stops {
  private:
   struct WatchedPair {
     std::uint32_t pair = 0;       // index into Scene::pairs
-    std::uint32_t other = 0;      // object that may be late or unknown; Scene::objects
     std::uint32_t published = 0;  // index into Report::pairs, or kNone
     double margin = 0.0;          // m: the largest that a zone states for it; 0: none
     // What brings its bodies nearer to each other: these levers, and the motion of `tracked`.
@@ -69,6 +69,12 @@ class Stops {
   void make_room(StoppingRobot& robot);
   [[nodiscard]] bool stops(std::uint32_t variable) const noexcept;
 
+  [[nodiscard]] static RobotStop unknown_stop(const StoppingRobot& robot) noexcept {
+    return {.robot = robot.robot,
+            .clearance = -kInfinity,
+            .pair = robot.pairs.empty() ? 0 : robot.pairs.front().pair,
+            .time = std::numeric_limits<double>::quiet_NaN()};
+  }
   [[nodiscard]] static bool is_absent(const Inputs& inputs, const StoppingRobot& robot) noexcept;
   void state_others(const Inputs& inputs, const CloudPairs* clouds, double time,
                     StoppingRobot& robot) const noexcept;

@@ -60,8 +60,8 @@ struct PairReport {
   // the pair is unknown.
   double model_error = 0.0;
   // m: a lower bound of the distance until all robots stand that are told to stop now and move one
-  // of the two (RobotStop), rounded to no worse than 0. -infinity if that is not known; NaN if
-  // neither object moves with a robot that states stops.
+  // of the two (RobotStop), rounded to no worse than 0. -infinity if that is not known; NaN if no
+  // joint that stops moves one of the two relative to the other.
   double stop_lower = std::numeric_limits<double>::quiet_NaN();
   // The closest points, world. Of objects that overlap: the point of each that lies deepest in the
   // other along the normal, as in DistanceResult. Points and normal are NaN if an image has no
@@ -178,7 +178,8 @@ struct RobotStop {
   // The largest share of its present speed, 0 to 1, from which it stops clear of everything by the
   // stated margins. 1 also if it stands beyond them; 0 if no share is certified.
   double scaling = 0.0;
-  // The least of (PairReport::stop_lower - margin) over its pairs, m; -infinity: not known.
+  // The least of its bounds less their margins over its pairs, until it stands, m. The bound of
+  // another robot may be lower (PairReport::stop_lower). -infinity: not known.
   double clearance = 0.0;
   std::uint32_t pair = 0;  // that has this clearance; Scene::pairs
   double share = 0.0;      // of its motion to the stop, 0 to 1, that is certainly clear
