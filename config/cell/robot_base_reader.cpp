@@ -163,6 +163,9 @@ RobotBase read_robot_attachment(const YamlNode& node, const std::vector<Robot>& 
 
 void limit_base(const StatedBase& stated, std::vector<JointVariable>& variables) {
   constexpr std::uint32_t kFirstOfQuaternion = 3;
+  // The root swings about the frame's origin.
+  const double arm = stated.base.frame_from_root.position.norm();
+  const double swings = arm == 0.0 ? 0.0 : (1.0 + 0x1p-50) * arm * stated.max_turn_speed;
   for (std::uint32_t i = 0; i < variables_of(JointType::kFloating); ++i) {
     JointVariable& variable = variables[i];
     variable.source = stated.limits.source.empty() ? "" : base_source(stated.limits.source);
@@ -170,7 +173,7 @@ void limit_base(const StatedBase& stated, std::vector<JointVariable>& variables)
     variable.frozen_limit_ns = stated.limits.frozen_limit_ns;
     variable.speed_tolerance = 1.0;
     variable.max_speed =
-        i < kFirstOfQuaternion ? stated.limits.max_speed : 0.5 * stated.max_turn_speed;
+        i < kFirstOfQuaternion ? stated.limits.max_speed + swings : 0.5 * stated.max_turn_speed;
   }
 }
 

@@ -27,9 +27,10 @@ class MotionSearch {
   // Does what Asker::ask() does, for a question without payloads.
   [[nodiscard]] std::optional<std::string> ask(const Question& question, Answer& answer);
 
-  // Marks all that moves an object relative to the world, as Lever::variable counts it.
-  void note_variables(std::uint32_t object, std::vector<bool>& moving) const {
-    posture_.chains().for_each_variable(object, [&](std::uint32_t v) { moving[v] = true; });
+  // As Chains::for_each_variable().
+  template <class Use>
+  void for_each_variable(std::uint32_t object, const Use& use) const {
+    posture_.chains().for_each_variable(object, use);
   }
   // Adds the levers of one of Scene::pairs. Returns what no stated error changes its distance by
   // more than, m; infinity: the pair has no link.

@@ -23,6 +23,14 @@ bool keeps(double lower, double margin) noexcept {
   return MotionSearch::proves(lower - kRounding, margin);
 }
 
+// A position that a variable may have: of a quaternion, no rotation.
+double neutral_position(const Scene& scene, std::uint32_t variable) {
+  const JointVariable& of = scene.variables[variable];
+  for (const RobotJoint& joint : scene.robots[of.robot].joints)
+    if (joint.type == JointType::kFloating && variable == joint.variable + 6) return 1.0;
+  return std::max(of.lower, std::min(0.0, of.upper));
+}
+
 }  // namespace
 
 Stops::Stops(const Scene& scene) : scene_(scene), stopping_of_robot_(scene.robots.size(), kNone) {
@@ -42,6 +50,8 @@ Stops::Stops(const Scene& scene) : scene_(scene), stopping_of_robot_(scene.robot
   for (std::uint32_t i = 0; i < scene.objects.size(); ++i) {
     if (!scene.objects[i].fixed && robot_of_object_[i] == kNone) tracked_.push_back(i);
   }
+  for (std::uint32_t v = 0; v < scene.variables.size(); ++v)
+    neutral_.push_back(neutral_position(scene, v));
   changes_.resize(scene.variables.size() + 2 * scene.robots.size());
   approaches_.resize(scene.objects.size());
   for (StoppingRobot& robot : robots_) {
@@ -60,7 +70,7 @@ Stops::StoppingRobot::StoppingRobot(const Scene& scene, std::uint32_t of)
   question.contacts.emplace();  // a contact in force has no margin here
 }
 
-// The pairs that its joints move: of its own links, and of those of what stands on it.
+// The pairs of what its joints move: its own links, and those of what stands on it.
 void Stops::add_pairs(StoppingRobot& robot) const {
   std::vector<bool> is_moved(scene_.objects.size(), false);
   robot.counts.resize(scene_.variables.size() + 2 * scene_.robots.size());
@@ -73,8 +83,10 @@ void Stops::add_pairs(StoppingRobot& robot) const {
     if (root(r) != robot.robot) continue;
     for (const RobotLink& link : scene_.robots[r].links) {
       if (link.object == RobotLink::kNoObject || scene_.objects[link.object].fixed) continue;
-      is_moved[link.object] = true;
       robot.links.push_back(link.object);
+      search_->for_each_variable(link.object, [&](std::uint32_t v) {
+        if (robot.joints.has(v)) is_moved[link.object] = true;
+      });
     }
   }
   std::vector<double> stated(scene_.pairs.size(), 0.0);
@@ -102,18 +114,13 @@ void Stops::add_pairs(StoppingRobot& robot) const {
                       .tracked = is_tracked ? other : kNone};
     added.model_error = search_->add_levers(p, robot.levers);
     added.end_lever = static_cast<std::uint32_t>(robot.levers.size());
-    const std::span levers = std::span(robot.levers).subspan(added.first_lever);
-    const auto is_own = [&](const Lever& lever) { return robot.joints.has(lever.variable); };
-    if (std::ranges::none_of(levers, is_own)) {
-      robot.levers.resize(added.first_lever);
-      continue;
-    }
-    const auto is_of_a_stop = [&](const Lever& lever) { return stops(lever.variable); };
-    added.is_of_stops = !is_tracked && std::ranges::all_of(levers, is_of_a_stop);
+    added.is_of_stops =
+        !is_tracked && std::all_of(robot.levers.begin() + added.first_lever, robot.levers.end(),
+                                   [&](const Lever& lever) { return stops(lever.variable); });
     robot.pairs.push_back(added);
     largest = std::max(largest, added.margin);
-    search_->note_variables(pair.first, robot.counts);
-    search_->note_variables(pair.second, robot.counts);
+    for (const std::uint32_t object : {pair.first, pair.second})
+      search_->for_each_variable(object, [&](std::uint32_t v) { robot.counts[v] = true; });
   }
   robot.question.far_enough = largest + kFarBeyondMargin;
   robot.question.margins_by_pair = robot.margins;
@@ -144,17 +151,16 @@ void Stops::add_others(StoppingRobot& robot) const {
 
 // A question of this size, so that those of ticks do not allocate.
 void Stops::make_room(StoppingRobot& robot) {
-  const auto within_limits = [&](const std::string& name) {
-    const auto of = std::ranges::find(scene_.variables, name, &JointVariable::name);
-    return std::max(of->lower, std::min(0.0, of->upper));
+  const auto neutral = [&](const std::string& name) {
+    return neutral_[variable_named(scene_, name).value()];
   };
   Question& question = robot.question;
   JointTrajectory& motion = question.motion;
   for (std::size_t i = 0; i < motion.positions.size(); ++i)
-    motion.positions[i] = within_limits(motion.joints[i % motion.joints.size()]);
+    motion.positions[i] = neutral(motion.joints[i % motion.joints.size()]);
   std::ranges::fill(motion.deviations, 1.0);
   for (StatedJoint& stated : question.joints) {
-    stated.position = within_limits(stated.name);
+    stated.position = neutral(stated.name);
     stated.most = 1.0;
   }
   for (SeenFrame& frame : question.seen) frame.is_known = false;
@@ -230,19 +236,13 @@ void Stops::state_others(const Inputs& inputs, const CloudPairs* clouds, double 
     if (robot.joints.has(v)) continue;
     StatedJoint& stated = robot.question.joints[next++];
     const TrackedVariable& state = inputs.robots.variables()[v];
-    stated.position = state.input.has_value ? state.position : 0.0;
+    stated.position = state.input.has_value ? state.position : neutral_[v];
     stated.age = state.input.has_value ? age(state.input) : time;
     stated.speed = state.input.has_value ? std::abs(state.velocity) : 0.0;
-    stated.most = kInfinity;
-    const std::uint32_t stopping = stopping_of_robot_[scene_.variables[v].robot];
-    if (!robot.counts[v]) {
-      stated.most = 0.0;  // no pair of this robot depends on it
-      continue;
-    }
-    // Another robot that stops as well.
-    if (stopping != kNone && robots_[stopping].joints.is_usable() &&
-        robots_[stopping].joints.has(v))
-      robots_[stopping].joints.state(stated, v);
+    stated.most = robot.counts[v] ? kInfinity : 0.0;  // no pair of this robot depends on others
+    if (!robot.counts[v] || !stops(v)) continue;
+    const StoppingJoints& of = robots_[stopping_of_robot_[scene_.variables[v].robot]].joints;
+    if (of.is_usable()) of.state(stated, v);
   }
   std::size_t pose = 0, frame = 0;
   for (const std::uint32_t i : tracked_) {

@@ -110,6 +110,8 @@ class Stops {
   std::vector<std::uint32_t> tracked_;            // objects that are neither fixed nor links
   // Until the robot stands: by variable, rad or m; by object that is neither fixed nor a link, m.
   std::vector<double> changes_, approaches_;
+  std::vector<double>
+      neutral_;              // by Scene::variables: where a joint is taken to be that is unknown
   bool all_usable_ = false;  // in this tick: all robots that state stops
   std::unique_ptr<MotionSearch> search_;
 };

@@ -61,7 +61,7 @@ struct PairReport {
   double model_error = 0.0;
   // m: a lower bound of the distance until all robots stand that are told to stop now and move one
   // of the two (RobotStop), rounded to no worse than 0. -infinity if that is not known; NaN if no
-  // joint that stops moves one of the two relative to the other.
+  // joint that stops moves one of the two.
   double stop_lower = std::numeric_limits<double>::quiet_NaN();
   // The closest points, world. Of objects that overlap: the point of each that lies deepest in the
   // other along the normal, as in DistanceResult. Points and normal are NaN if an image has no

@@ -154,6 +154,10 @@ TEST_F(Robots, ABaseThatFollowsAFrameHasLimitsOfItsOwn) {
   EXPECT_NEAR(stated[6].max_speed, 0.25 * std::numbers::pi, 1e-12);
   EXPECT_EQ(stated[6].frozen_limit_ns, 300'000'000);
   EXPECT_EQ(stated[6].source, "/tf:bases");
+  const std::vector<JointVariable> swinging =
+      with_base("{frame: base_link, pose: {xyz: [0, 2, 0]}, max_speed: 1.5, max_turn_speed: 90}");
+  EXPECT_NEAR(swinging[0].max_speed, 1.5 + std::numbers::pi, 1e-12) << "the frame's, 2 m away";
+  EXPECT_NEAR(swinging[6].max_speed, 0.25 * std::numbers::pi, 1e-12);
 }
 
 // grip3 = 3 grip2 + 0.5, where grip2 = -2 grip + 0.25.

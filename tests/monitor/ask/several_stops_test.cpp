@@ -180,6 +180,36 @@ TEST(SeveralStops, AreNotKnownWhileAnotherRobotContradictsItself) {
   EXPECT_EQ(stop_lower(scene, report, "own_finger", "other_finger"), -kInfinity);
 }
 
+// The pedestal of an arm on tf drives on while the arm stops: no stop of the arm bounds that.
+TEST(SeveralStops, HaveNoBoundForWhatTheirJointsDoNotMove) {
+  const std::string on_tf = ", base: {frame: odom, max_speed: 1, max_turn_speed: 1}";
+  const Scene scene =
+      cell(robot("own", on_tf + stopping("40", "100")) + robot("other", kOpposite),
+           "  - {name: pedestal, attached: {to: own_foot}, sphere: {radius: 0.1}}\n",
+           pair_of("pedestal", "ball") + pair_of("own", "ball") + pair_of("own", "other"));
+  Monitor monitor(scene);
+  std::vector<JointSample> samples = said(scene, test::kStart);
+  for (JointSample& sample : samples)
+    if (scene.variables[sample.variable].name.ends_with("rot_w")) sample.position = 1.0;
+  const Report& report = monitor.tick({}, samples, test::kStart);
+  EXPECT_TRUE(std::isnan(stop_lower(scene, report, "pedestal", "ball")));
+  EXPECT_LT(stop_lower(scene, report, "own_finger", "ball"), std::hypot(9.0, 2.0) - 0.15 - 0.14);
+  EXPECT_EQ(stop_of(scene, report, "own").validity, SeparationValidity::kMeasured);
+}
+
+// Its base on tf was never heard, and never will be.
+TEST(SeveralStops, AreKnownBesideAnAbsentRobotOnTf) {
+  const Scene scene = cell(
+      robot("own", stopping("40", "100")) + robot("other", kOpposite) +
+          robot("away", ", absent: true, base: {frame: odom, max_speed: 1, max_turn_speed: 1}"),
+      "", pair_of("own", "ball") + pair_of("own", "other") + pair_of("own", "away"));
+  Monitor monitor(scene);
+  const Report& report =
+      monitor.tick({}, said(scene, test::kStart, "own", 0.3, 1.0, "away"), test::kStart);
+  EXPECT_EQ(stop_of(scene, report, "own").validity, SeparationValidity::kMeasured);
+  EXPECT_GT(stop_lower(scene, report, "own_finger", "other_finger"), 0.0);
+}
+
 TEST(SeveralStops, OfAnAbsentRobotLimitNothing) {
   const Scene scene = cell(robot("own", stopping("40", "100")) +
                                robot("away", ", absent: true" + kOpposite + stopping("40", "100")),
