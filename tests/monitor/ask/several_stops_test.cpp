@@ -197,7 +197,7 @@ TEST(SeveralStops, HaveNoBoundForWhatTheirJointsDoNotMove) {
   EXPECT_EQ(stop_of(scene, report, "own").validity, SeparationValidity::kMeasured);
 }
 
-// Its base on tf was never heard, and never will be.
+// The base of the absent robot on tf was never heard.
 TEST(SeveralStops, AreKnownBesideAnAbsentRobotOnTf) {
   const Scene scene = cell(
       robot("own", stopping("40", "100")) + robot("other", kOpposite) +
