@@ -52,9 +52,12 @@ struct CurvedConclusion {
   return unit_along(Vec3(found.point_on_b - found.point_on_a));
 }
 
-// Bounds that have converged are within this of each other, times the pair's size. The error of the
-// place may be larger: then they were within kComputedGap before any error was added.
-inline constexpr double kConvergedCurvedGap = 1e-13, kComputedGap = 0.75 * kConvergedCurvedGap;
+// Bounds that have converged are within kConvergedCurvedGap of each other, times the pair's size.
+// The error of the place may be larger. Then they were within kComputedGap before any error was
+// added. The difference is twice the largest error that roundings of a pair and of its place make.
+inline constexpr double kConvergedCurvedGap = 1e-13;
+inline constexpr double kComputedGap =
+    kConvergedCurvedGap - 2.0 * (kUlpsOfB * kUlp + kRotationError);
 
 // The result of the bodies with their radii.
 [[nodiscard]] inline DistanceResult conclude(const ConvexBody& a, const ConvexBody& b,

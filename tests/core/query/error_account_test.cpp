@@ -289,5 +289,30 @@ TEST(ErrorAccount, IsAppliedToCurvedBodiesOverHalfSpaces) {
   }
 }
 
+// A link's place has more of an error than roundings. Bounds widen by it and have converged all the
+// same.
+TEST(ErrorAccount, OfAPlaceDoesNotDecideWhetherBoundsHaveConverged) {
+  const ConvexBody a = made(ellipsoid({0.3, 0.2, 0.1})), b = made(cylinder(0.2, 0.3));
+  for (const double gap : {0.0, 0.7e-13, 0.8e-13, 0.88e-13, 1.1e-13}) {
+    for (const double lower : {0.5, -0.05}) {
+      for (const double error : {0.0, 1e-14, 1e-12, 1e-6}) {
+        CurvedConclusion found;
+        found.size = a.bounding_radius + b.bounding_radius + 1.0;
+        found.lower = lower;
+        found.upper = lower + gap * found.size;
+        found.error = error;
+        found.normal = Vec3::UnitZ();
+        const DistanceResult r = conclude(a, b, found);
+        const auto converged =
+            lower > 0.0 ? DistanceStatus::kConverged : DistanceStatus::kOverlapping;
+        EXPECT_EQ(r.status, gap < 1e-13 ? converged : DistanceStatus::kIterationLimit)
+            << gap << ", error " << error;
+        EXPECT_LE(r.lower, found.lower - error);
+        EXPECT_GE(r.upper, found.upper + error);
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace clearance
