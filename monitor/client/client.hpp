@@ -93,8 +93,6 @@ class Stream {
   // looked at it: acknowledge(). The next good message ends it then.
   [[nodiscard]] bool is_held() const noexcept { return judge_.is_held(); }
   void acknowledge() noexcept { judge_.acknowledge(); }
-  // As StreamOptions::period, from the next message on.
-  void set_period(std::chrono::nanoseconds period) noexcept { judge_.set_period(period.count()); }
   // A copy of it says the same to another thread: its error() counts the time by monotonic_ns().
   [[nodiscard]] const ReportJudge& judge() const noexcept { return judge_; }
   // Takes the last message, in exchange for a sample that may be used again.

@@ -36,8 +36,6 @@ class ReportJudge {
   [[nodiscard]] ReportError error(std::int64_t at_ns) const noexcept;
   // Two faulty messages came within the interval: error() stays until acknowledge().
   [[nodiscard]] bool is_held() const noexcept { return held_by_ != ReportError::kGood; }
-  // As Limits::period_ns, from the next message on.
-  void set_period(std::int64_t period_ns) noexcept { limits_.period_ns = period_ns; }
   // Forgets the errors, and which daemon was heard before.
   void acknowledge() noexcept;
 

@@ -2,7 +2,6 @@
 #pragma once
 
 #include <algorithm>
-#include <chrono>
 #include <cstdint>
 #include <deque>
 #include <limits>
@@ -56,6 +55,7 @@ struct OfTwoScenes {
 struct SharedCell::ShareStreams {
   ShareStreams(Connection& whole, std::string of, std::int64_t late, bool has_gradients)
       : name(std::move(of)),
+        late_ns(late),
         connection(whole.participant().handle(), whole.participant().partition(),
                    topics_of_share(whole.topics(), name)),
         reports(connection),
@@ -64,14 +64,9 @@ struct SharedCell::ShareStreams {
         health(connection),
         zones(connection.participant(), TopicKind::kZones, connection.topics().zones, true) {
     if (has_gradients) gradients.emplace(connection);
-    set_late(late);
   }
   ~ShareStreams() { dds_delete(zones.entity()); }
 
-  void set_late(std::int64_t late) noexcept {
-    late_ns = late;
-    reports.set_period(std::chrono::nanoseconds(late));
-  }
   [[nodiscard]] bool is_held() const noexcept {
     return reports.is_held() || separations.is_held() || (gradients && gradients->is_held());
   }
@@ -219,7 +214,7 @@ struct SharedCell::ShareStreams {
   }
 
   std::string name;
-  std::int64_t late_ns = 0;
+  std::int64_t late_ns;
   Connection connection;
   Reports reports;
   client::Separation separations;

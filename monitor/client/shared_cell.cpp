@@ -3,6 +3,7 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <array>
 #include <cstring>
 #include <random>
 #include <set>
@@ -278,11 +279,16 @@ bool SharedCell::is_whole() const noexcept {
 }
 
 ReportError SharedCell::reason() const noexcept {
+  using enum ReportError;
+  // A share may be late by late_after, or by as much ahead, where a reader of it alone may not.
+  constexpr std::array kOfTime = {kGood, kNothingHeard, kOld, kClocksDisagree, kSilent};
   for (const auto& share : shares_) {
     const ReportError error = share->reports.reason();
-    if (error != ReportError::kGood) return error;
+    if (std::ranges::find(kOfTime, error) == kOfTime.end()) return error;
   }
-  return is_whole() ? ReportError::kGood : ReportError::kShare;
+  if (joined_at_ == 0) return kNothingHeard;
+  if (!is_whole()) return kShare;
+  return monotonic_ns() - joined_at_ <= late_ns_ ? kGood : kSilent;
 }
 
 void SharedCell::acknowledge() noexcept {

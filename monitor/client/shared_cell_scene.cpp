@@ -96,7 +96,7 @@ bool SharedCell::follow_revision() {
 
 void SharedCell::set_late(std::int64_t late_ns) {
   late_ns_ = late_ns;
-  for (const auto& share : shares_) share->set_late(late_ns);
+  for (const auto& share : shares_) share->late_ns = late_ns;
 }
 
 const clearance_msg_Catalogue* SharedCell::catalogue() const noexcept {
