@@ -27,11 +27,14 @@ const std::string kOpposite = ", base: {pose: {xyz: [5, 0, 0], rpy: [0, 0, 3.141
 Scene cell(const std::string& robots, const std::string& objects, const std::string& pairs) {
   const test::ScratchFolder folder;
   test::write_text(folder / "scara.urdf", test::finger_urdf());
-  return scene_of("name: test\nunits: {length: m, angle: rad}\nrate_hz: 1000\nrobots:\n" + robots +
-                      "objects:\n  - {name: ball, fixed: true, sphere: {radius: 0.1}, pose: {xyz: "
-                      "[0, 9, 0]}}\n" +
-                      objects + "pairs:\n" + pairs,
-                  folder / "cell.yaml");
+  return scene_of(
+      "name: test\nunits: {length: m, angle: rad}\nrate_hz: 1000\nros2: {world_frame: "
+      "map}\nrobots:\n" +
+          robots +
+          "objects:\n  - {name: ball, fixed: true, sphere: {radius: 0.1}, pose: {xyz: "
+          "[0, 9, 0]}}\n" +
+          objects + "pairs:\n" + pairs,
+      folder / "cell.yaml");
 }
 std::string pair_of(const std::string& a, const std::string& b) {
   return "  - {between: [" + a + ", " + b + "]}\n";
@@ -56,8 +59,9 @@ std::vector<JointSample> said(const Scene& scene, std::int64_t now, const std::s
 const RobotStop& stop_of(const Scene& scene, const Report& report, const std::string& name) {
   const auto found = std::ranges::find_if(
       report.stops, [&](const RobotStop& stop) { return scene.robots[stop.robot].name == name; });
+  static const RobotStop kNone;
   EXPECT_NE(found, report.stops.end()) << name;
-  return *found;
+  return found == report.stops.end() ? kNone : *found;
 }
 double stop_lower(const Scene& scene, const Report& report, const std::string& a,
                   const std::string& b) {
