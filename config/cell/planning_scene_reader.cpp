@@ -125,7 +125,7 @@ std::optional<FileMistake> PlanningSceneReader::add_attached(
     auto& made = std::get<Object>(object);
     made.fixed = false;
     made.max_speed = kInfinity;
-    if (message.weight > 0.0) made.mass = message.weight;
+    made.mass = moveit::mass_of(message.weight).value_or(kInfinity);
     const YamlNode entry = moveit::attached_entry(
         made.name, "", {message.link_name, made.world_from_object, message.touch_links}, {},
         quantities_.units().length);

@@ -44,9 +44,9 @@ struct CurvedConclusion {
   bool is_radial = false;  // the normal is that of a closed form, along the gap vector to rounding
 };
 
-// The direction, from A to B, in which radii are added, m: their `sum`. If the bodies with their
-// radii are disjoint, it is the direction of the gap vector. Then the rest of that vector is as
-// long as the distance. The direction of a shorter vector may be that of its rounding.
+// The direction, from A to B, in which radii are added; `sum`: of both radii, m. If the bodies with
+// their radii are disjoint, it is the direction of the gap vector. Then the rest of that vector is
+// as long as the distance. The direction of a shorter vector may be that of its rounding.
 [[nodiscard]] inline Vec3 radial_direction(const CurvedConclusion& found, double sum) noexcept {
   if (found.is_radial || !(found.lower > sum)) return found.normal;
   return unit_along(Vec3(found.point_on_b - found.point_on_a));

@@ -27,7 +27,7 @@ class MotionSearch {
   // Does what Asker::ask() does, for a question without payloads.
   [[nodiscard]] std::optional<std::string> ask(const Question& question, Answer& answer);
 
-  // As Chains::for_each_variable().
+  // Calls use(variable) for all that moves a link, as Chains::for_each_variable() does.
   template <class Use>
   void for_each_variable(std::uint32_t object, const Use& use) const {
     posture_.chains().for_each_variable(object, use);

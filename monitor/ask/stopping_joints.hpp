@@ -40,8 +40,8 @@ class StoppingJoints {
   // Where a joint stands then, if it keeps its velocity until the brakes act and needs all that its
   // stop admits, rad or m: the end of the line, or the far corner of the box.
   [[nodiscard]] double standstill(std::uint32_t variable) const noexcept;
-  // Where a joint may be until then: no farther than `most` from `position`, rad or m, however long
-  // another stop takes.
+  // States the region of a joint until then: no farther than `most` from `position`, rad or m,
+  // however long another stop takes.
   void state(StatedJoint& out, std::uint32_t variable) const noexcept;
   // Writes the motion of a stop from `scaling` times the present speeds.
   void write_motion(double scaling, JointTrajectory& motion) const noexcept;

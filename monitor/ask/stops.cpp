@@ -177,7 +177,7 @@ void Stops::write(const Inputs& inputs, const CloudPairs* clouds, const Contacts
   all_usable_ = true;
   for (StoppingRobot& robot : robots_) {
     robot.joints.read(inputs);
-    all_usable_ = all_usable_ && robot.joints.is_usable();
+    all_usable_ = all_usable_ && (robot.joints.is_usable() || is_absent(inputs, robot));
     for (const WatchedPair& pair : robot.pairs)
       if (pair.published != kNone) report.pairs[pair.published].stop_lower = kNan;
   }

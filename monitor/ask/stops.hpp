@@ -87,8 +87,8 @@ class Stops {
   [[nodiscard]] bool bound_by_levers(const Inputs& inputs, const Report& report,
                                      StoppingRobot& robot) noexcept;
   void note_changes(const Inputs& inputs, const StoppingRobot& robot) noexcept;
-  // Of two robots whose stops move a pair, each has a bound for the time of its own stop. What
-  // moves by their stops alone is bounded for as long as both take. Else the lower bound counts.
+  // Each robot whose stop moves a pair has a bound for its own time. A pair that moves by stops
+  // alone is bounded for as long as all of them take. Else the lowest bound counts.
   [[nodiscard]] bool holds_for_all(const WatchedPair& pair) const noexcept {
     return pair.is_of_stops && all_usable_;
   }
@@ -110,9 +110,9 @@ class Stops {
   std::vector<std::uint32_t> tracked_;            // objects that are neither fixed nor links
   // Until the robot stands: by variable, rad or m; by object that is neither fixed nor a link, m.
   std::vector<double> changes_, approaches_;
-  std::vector<double>
-      neutral_;              // by Scene::variables: where a joint is taken to be that is unknown
-  bool all_usable_ = false;  // in this tick: all robots that state stops
+  // By Scene::variables: where a joint is taken to be while it is not known.
+  std::vector<double> neutral_;
+  bool all_usable_ = false;  // in this tick: all robots that state stops and are there
   std::unique_ptr<MotionSearch> search_;
 };
 

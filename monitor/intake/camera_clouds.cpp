@@ -1,23 +1,16 @@
 #include "monitor/intake/camera_clouds.hpp"
 
 #include <cstddef>
-#include <cstring>
 #include <span>
 
 #include "monitor/intake/digest.hpp"
+#include "monitor/intake/layout.hpp"
 #include "monitor/intake/measured_points.hpp"
 #include "monitor/intake/stamp_check.hpp"
 #include "monitor/intake/tf_tree.hpp"
 
 namespace clearance {
 namespace {
-
-template <class Number>
-Number read_number(std::span<const std::byte> bytes, std::size_t at) noexcept {
-  Number number{};
-  std::memcpy(&number, bytes.data() + at, sizeof number);
-  return number;
-}
 
 // Reads what images and points have in common, and judges their layout.
 template <class Message, class Seen>
@@ -40,8 +33,8 @@ bool ImageCloud::read(const RawSensorMessage&, const Sensor& sensor) {
 std::uint32_t ImageCloud::depth_digest(std::size_t i) const noexcept {
   const std::size_t row = i / image_.width * image_.step, column = i % image_.width;
   if (image_.format == DepthImage::Format::kMillimetres16)
-    return read_number<std::uint16_t>(image_.bytes, row + 2 * column);
-  return digest_of_depth(read_number<float>(image_.bytes, row + 4 * column));
+    return number_at<std::uint16_t>(image_.bytes.data() + row + 2 * column);
+  return digest_of_depth(number_at<float>(image_.bytes.data() + row + 4 * column));
 }
 
 bool PointsCloud::read(const RawSensorMessage&, const Sensor& sensor) {
@@ -61,7 +54,7 @@ std::uint32_t PointsCloud::depth_digest(std::size_t i) const noexcept {
       i / points_.width * points_.row_step + i % points_.width * points_.point_step;
   std::uint32_t digest = 0;
   for (const std::size_t field : {points_.x, points_.y, points_.z})
-    digest = 31 * digest + digest_of_depth(read_number<float>(points_.bytes, point + field));
+    digest = 31 * digest + digest_of_depth(number_at<float>(points_.bytes.data() + point + field));
   return digest;
 }
 

@@ -5,6 +5,7 @@
 #include <array>
 #include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <span>
 
 #include "monitor/intake/camera_messages.hpp"
@@ -20,6 +21,14 @@ struct Layout {
   std::size_t numbers = 1;
   std::span<const std::byte> bytes;
 };
+
+// The number whose bytes begin here, aligned or not.
+template <class Number>
+[[nodiscard]] Number number_at(const std::byte* bytes) noexcept {
+  Number number{};
+  std::memcpy(&number, bytes, sizeof number);
+  return number;
+}
 
 // Returns kNoPixels, kTooManyPixels, kStep or kShortData, for rows that are not all there;
 // kLayout for rows with as much padding as content, which hold wider numbers than the message says;

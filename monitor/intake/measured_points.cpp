@@ -4,22 +4,15 @@
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <cstring>
 #include <limits>
+
+#include "monitor/intake/layout.hpp"
 
 namespace clearance {
 namespace {
 
 constexpr float kMissing = std::numeric_limits<float>::quiet_NaN();
 constexpr float kTooNear = -std::numeric_limits<float>::infinity();
-
-template <class Number>
-Number number_at(const std::byte* bytes) noexcept {
-  Number value{};
-  std::memcpy(&value, bytes, sizeof value);
-  return value;
-}
-float float_at(const std::byte* bytes) noexcept { return number_at<float>(bytes); }
 
 // Times of the points of a frame, s. Integers are offsets in ns. Numbers of floating point are in
 // s, unless they are so large that only ns since an epoch can be meant.
@@ -91,8 +84,8 @@ FrameFault measured_points(const PointsView& view, const Sensor& sensor,
   for (std::uint32_t row = 0; row < view.height; ++row) {
     const std::byte* point = view.bytes.data() + row * view.row_step;
     for (std::uint32_t column = 0; column < view.width; ++column, point += view.point_step) {
-      const float x = float_at(point + view.x), y = float_at(point + view.y),
-                  z = float_at(point + view.z);
+      const float x = number_at<float>(point + view.x), y = number_at<float>(point + view.y),
+                  z = number_at<float>(point + view.z);
       if (x == kTooNear || y == kTooNear || z == kTooNear) return FrameFault::kTooNear;
       points.push_back(ball(x, y, z, sensor, is_wide));
       const MeasuredPoint& added = points.back();

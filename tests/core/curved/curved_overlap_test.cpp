@@ -1,5 +1,5 @@
-// Where curved bodies overlap: the points that meet when B is moved by the depth, and the answers
-// of bodies with radii. Oracles: closed forms, differences, and the same question with the depth.
+// Overlaps of curved bodies: the points that meet when B is moved by the depth, and the answers of
+// bodies with radii. Oracles: closed forms, differences, and the same question with the depth.
 #include <gtest/gtest.h>
 
 #include <cmath>

@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "tests/monitor/ask/stopping_scara.hpp"
+#include "tests/shared/allocation_count.hpp"
 
 namespace clearance {
 namespace {
@@ -85,13 +86,16 @@ TEST(SeveralStops, OfTwoTimesHoldUntilBothStandWhicheverIsFirst) {
     const std::string slow = robot(
         "slow", kOpposite + stopping("40", "1000",
                                      curves ? ", joints: {shoulder: {acceleration: 0.25}}" : ""));
+    // An absent robot, which sends no joints, takes nothing from the bounds of others.
+    const std::string away = robot("away", ", absent: true" + stopping("40", "100"));
     std::vector<double> found;
-    for (const std::string& robots : {quick + slow, slow + quick}) {
-      const Scene scene =
-          cell(robots, "", pair_of("quick", "slow") + pair_of("quick", "ball") + zone);
+    for (const std::string& robots : {quick + slow + away, slow + quick + away}) {
+      const Scene scene = cell(
+          robots, "",
+          pair_of("quick", "slow") + pair_of("quick", "ball") + pair_of("away", "ball") + zone);
       Monitor monitor(scene);
       const Report& report =
-          monitor.tick({}, said(scene, test::kStart, "slow", -0.5, 1.0), test::kStart);
+          monitor.tick({}, said(scene, test::kStart, "slow", -0.5, 1.0, "away"), test::kStart);
       found.push_back(stop_lower(scene, report, "quick_finger", "slow_finger"));
       EXPECT_LE(found.back(), kFacing + 1e-6);
       for (const char* const name : {"quick", "slow"}) {
@@ -208,8 +212,10 @@ TEST(SeveralStops, AreKnownBesideAnAbsentRobotOnTf) {
           robot("away", ", absent: true, base: {frame: odom, max_speed: 1, max_turn_speed: 1}"),
       "", pair_of("own", "ball") + pair_of("own", "other") + pair_of("own", "away"));
   Monitor monitor(scene);
-  const Report& report =
-      monitor.tick({}, said(scene, test::kStart, "own", 0.3, 1.0, "away"), test::kStart);
+  const std::vector<JointSample> samples = said(scene, test::kStart, "own", 0.3, 1.0, "away");
+  const std::uint64_t before = allocations();
+  const Report& report = monitor.tick({}, samples, test::kStart);
+  EXPECT_EQ(allocations(), before) << "the first search finds its room";
   EXPECT_EQ(stop_of(scene, report, "own").validity, SeparationValidity::kMeasured);
   EXPECT_GT(stop_lower(scene, report, "own_finger", "other_finger"), 0.0);
 }
